@@ -1,0 +1,30 @@
+# Compiler settings shared by every target, as two interface targets:
+#   eigengrain_flags     what every user of the headers needs too (exported)
+#   eigengrain_warnings  what only our own code is held to (not exported)
+add_library(eigengrain_flags INTERFACE)
+target_compile_features(eigengrain_flags INTERFACE cxx_std_20)
+if(EIGENGRAIN_ASSERTIONS)
+  target_compile_definitions(eigengrain_flags INTERFACE EIGENGRAIN_ASSERTIONS)
+endif()
+
+add_library(eigengrain_warnings INTERFACE)
+target_compile_options(eigengrain_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual
+  -Wunused -Woverloaded-virtual -Wdouble-promotion -Wextra-semi
+  # One rule for fused multiply-add everywhere: only where the source asks for it, so that a result
+  # does not depend on how the compiler happened to vectorise a loop (docs/architecture.md).
+  -ffp-contract=off)
+if(EIGENGRAIN_WERROR)
+  target_compile_options(eigengrain_warnings INTERFACE -Werror)
+endif()
+if(EIGENGRAIN_ASSERTIONS)
+  target_compile_definitions(eigengrain_warnings INTERFACE _GLIBCXX_ASSERTIONS)
+else()
+  # Without our assertions Eigen's are off too: they sit in the innermost loops.
+  target_compile_definitions(eigengrain_warnings INTERFACE $<$<NOT:$<CONFIG:Debug>>:EIGEN_NO_DEBUG>)
+endif()
+if(EIGENGRAIN_SANITIZE)
+  target_compile_options(eigengrain_flags INTERFACE -fsanitize=${EIGENGRAIN_SANITIZE}
+                         -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(eigengrain_flags INTERFACE -fsanitize=${EIGENGRAIN_SANITIZE})
+endif()

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+/// Small vectors and matrices. Everything that has a fixed, small size is an Eigen type.
+namespace eigengrain {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+
+/// The matrix [r]× of the cross product: [r]× v = r × v.
+inline Mat3 cross_matrix(const Vec3& r) {
+  Mat3 m;
+  m << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
+  return m;
+}
+
+}  // namespace eigengrain

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "eigengrain/base/vec.hpp"
+
+#include <concepts>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+
+/// The contract between a contact and its law (docs/add-a-law.md).
+///
+/// A law is a value that holds its parameters and offers pure functions: nothing is stored while a force is
+/// computed, so that Newton iterations, line searches and finite differences may evaluate as often as they
+/// like, and whoever runs the explicit cycle commits the new state.
+///
+/// Signs (docs/notation.md): n is the unit normal from the contact's first side to its second; the force F is
+/// that of the first side on the second, so a compressive force has F·n > 0.
+namespace eigengrain::contact {
+
+/// What a law may know about its contact.
+struct ContactMotion {
+  Vec3 normal = Vec3::Zero();  ///< n now, unit
+  double overlap = 0;          ///< U now, m; positive when the surfaces interpenetrate
+  Vec3 displacement =
+      Vec3::Zero();              ///< increment of the relative displacement δ since the committed state, m
+  Vec3 rotation = Vec3::Zero();  ///< increment of the relative rotation φ, rad
+  Vec3 spin = Vec3::Zero();      ///< increment of the mean rotation ½(θ_1 + θ_2), rad
+};
+
+/// What acts at the contact point, of the first side on the second.
+struct ContactForce {
+  Vec3 force = Vec3::Zero();   ///< N
+  Vec3 moment = Vec3::Zero();  ///< N m, beyond that of `force` about the centres
+};
+
+/// Elastic stiffness of a contact in its own frame (eq. 1.34): along n and across it. Isotropic across n.
+struct ContactStiffness {
+  double normal = 0;   ///< k_n, N/m
+  double shear = 0;    ///< k_s, N/m
+  double twist = 0;    ///< κ_n, N m
+  double bending = 0;  ///< κ_s, N m
+
+  /// D of the relative displacement: k_n nnᵀ + k_s (1 - nnᵀ).
+  Mat3 translation(const Vec3& n) const { return normal_and_shear(n, normal, shear); }
+  /// D of the relative rotation: κ_n nnᵀ + κ_s (1 - nnᵀ).
+  Mat3 rotation(const Vec3& n) const { return normal_and_shear(n, twist, bending); }
+
+ private:
+  static Mat3 normal_and_shear(const Vec3& n, double along, double across) {
+    return across * Mat3::Identity() + (along - across) * n * n.transpose();
+  }
+};
+
+/// Consistent derivative of the force law on its present branch, -dF/dδ and -dM/dφ at fixed n.
+struct ContactTangent {
+  Mat3 translation = Mat3::Zero();  ///< N/m; unsymmetric while the contact slips
+  Mat3 rotation = Mat3::Zero();     ///< N m
+};
+
+/// One parameter of a law, as scene files and their documentation see it.
+struct ParameterDescription {
+  enum class Kind { quantity, flag };
+
+  std::string_view name;
+  Kind kind = Kind::quantity;
+  std::string_view unit;                  ///< SI, as in "N/m"; empty for a pure number
+  std::optional<double> default_value{};  ///< none: the scene must give it. Flags are 0 or 1
+  double minimum = -std::numeric_limits<double>::infinity();
+  bool minimum_allowed = true;  ///< whether the minimum itself is a valid value
+  std::string_view description;
+};
+
+/// A law: a state that belongs to each contact (may be empty) and pure functions of motion and old state.
+template <class L>
+concept ContactLaw = requires(const L& law, const ContactMotion& motion, const typename L::State& state,
+                              typename L::State& next, std::span<const double> values) {
+  { L::name } -> std::convertible_to<std::string_view>;
+  { L::description } -> std::convertible_to<std::string_view>;
+  /// Builds the law from values in the order of its parameters.
+  { L::from_values(values) } -> std::same_as<L>;
+  /// Whether the contact transmits anything; the others mean something only where this holds.
+  { law.acts(motion, state) } -> std::same_as<bool>;
+  /// Force after the motion; `next` receives the state that a commit would store.
+  { law.evaluate(motion, state, next) } -> std::same_as<ContactForce>;
+  { law.stiffness(motion, state) } -> std::same_as<ContactStiffness>;
+  { law.tangent(motion, state) } -> std::same_as<ContactTangent>;
+  /// Elastic energy stored after the motion, J.
+  { law.energy(motion, state) } -> std::same_as<double>;
+  /// Whether any contact of the law can ever have shear or rotational stiffness.
+  { law.needs_rotation() } -> std::same_as<bool>;
+};
+
+}  // namespace eigengrain::contact

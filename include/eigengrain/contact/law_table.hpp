@@ -1,0 +1,24 @@
+#pragma once
+
+#include "eigengrain/contact/law.hpp"
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace eigengrain::contact {
+
+/// A law as a user meets it in a scene file.
+struct LawDescription {
+  std::string_view name;
+  std::string_view description;
+  std::span<const ParameterDescription> parameters;
+};
+
+/// Every law that exists, in the order of the table in law_table.cpp.
+const std::vector<LawDescription>& law_descriptions();
+
+/// The law of that name, or nullptr.
+const LawDescription* find_law(std::string_view name);
+
+}  // namespace eigengrain::contact

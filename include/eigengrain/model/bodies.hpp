@@ -1,0 +1,55 @@
+#pragma once
+
+#include "eigengrain/base/vec.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace eigengrain::model {
+
+/// Components of a body's motion that keep their given velocity: bits 0-2 translation x, y, z, bits 3-5
+/// rotation x, y, z.
+class FixedComponents {
+ public:
+  constexpr FixedComponents() = default;
+  constexpr explicit FixedComponents(std::uint8_t bits) : bits_(bits) {}
+
+  constexpr std::uint8_t bits() const { return bits_; }
+  constexpr std::uint8_t translation() const { return bits_ & 7U; }
+  constexpr std::uint8_t rotation() const { return static_cast<std::uint8_t>(bits_ >> 3U) & 7U; }
+  constexpr bool all() const { return bits_ == 63; }
+  constexpr bool component(int k) const { return ((bits_ >> k) & 1U) != 0; }
+  constexpr void fix(int k) { bits_ = static_cast<std::uint8_t>(bits_ | (1U << k)); }
+  friend constexpr bool operator==(FixedComponents, FixedComponents) = default;
+
+ private:
+  std::uint8_t bits_ = 0;
+};
+
+/// Rigid bodies in contiguous columns, one row a body; a ball is a body with one spherical piece.
+/// The order of the rows is a storage order (see sort_along_curve); identity never changes.
+struct Bodies {
+  std::vector<std::int64_t> identity;  ///< the place in the scene, from 0
+  std::vector<Vec3> position;          ///< centre of mass, m
+  std::vector<double> radius;          ///< m
+  std::vector<double> mass;            ///< kg
+  std::vector<double> inertia;         ///< about any axis through the centre (spheres), kg m²
+  std::vector<std::int32_t> material;  ///< index into Scene::materials
+  std::vector<FixedComponents> fixed;
+
+  std::int32_t size() const { return static_cast<std::int32_t>(position.size()); }
+};
+
+/// Mass and moment of inertia of a homogeneous solid sphere: m = 4/3 π R³ ρ, I = 2/5 m R².
+double sphere_mass(double radius, double density);
+double sphere_inertia(double radius, double mass);
+
+/// Puts the bodies in the order of a space-filling (Morton) curve, so that neighbours in space are
+/// neighbours in memory. Depends on positions and identities only.
+void sort_along_curve(Bodies& bodies);
+
+/// Row r of the result is row order[r] of the bodies given.
+Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order);
+
+}  // namespace eigengrain::model

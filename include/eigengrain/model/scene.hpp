@@ -1,0 +1,70 @@
+#pragma once
+
+#include "eigengrain/base/vec.hpp"
+#include "eigengrain/model/bodies.hpp"
+#include "eigengrain/model/surroundings.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// A scene is data: what the user asked for, in SI units, checked but not yet built.
+namespace eigengrain::model {
+
+struct Material {
+  std::string name;
+  double density = 0;  ///< kg/m³; 0 for a material that only walls are made of
+};
+
+/// The law between two materials. An index of any_material matches every material.
+struct ContactRule {
+  static constexpr std::int32_t any_material = -1;
+
+  std::int32_t first = any_material;   ///< index into Scene::materials
+  std::int32_t second = any_material;  ///< index into Scene::materials
+  std::string law;                     ///< a name of the law table (contact/law_table.hpp), or "none"
+  std::vector<double> parameters;      ///< in the order of the law's own description; flags as 0 or 1
+
+  bool matches(std::int32_t a, std::int32_t b) const {
+    const auto fits = [](std::int32_t mine, std::int32_t other) {
+      return mine == any_material || mine == other;
+    };
+    return (fits(first, a) && fits(second, b)) || (fits(first, b) && fits(second, a));
+  }
+};
+
+enum class TimestepPolicy { estimate, fixed, bound };
+
+struct TimestepChoice {
+  TimestepPolicy policy = TimestepPolicy::estimate;
+  double safety = 0.8;       ///< fraction of the estimate or bound in use
+  std::optional<double> dt;  ///< s, with policy fixed
+};
+
+struct RunChoice {
+  std::optional<std::int64_t> steps;
+  std::optional<double> unbalanced;  ///< stop below this mean unbalanced ratio
+};
+
+struct Scene {
+  std::string name;  ///< of the file, for messages
+  std::vector<Material> materials;
+  std::vector<ContactRule> contacts;  ///< the first that matches a pair holds
+  Bodies bodies;                      ///< in the order in which the scene names them
+  std::vector<Plane> walls;
+  PeriodicCell cell;
+  Vec3 gravity = Vec3::Zero();  ///< m/s²
+  double local_damping = 0.7;   ///< α of the seed's eq. 1.47
+  TimestepChoice timestep;
+  RunChoice run;
+
+  /// Index into `contacts` of the rule for two materials, or -1.
+  std::int32_t rule_for(std::int32_t material_a, std::int32_t material_b) const {
+    for (std::size_t r = 0; r < contacts.size(); ++r)
+      if (contacts[r].matches(material_a, material_b)) return static_cast<std::int32_t>(r);
+    return -1;
+  }
+};
+
+}  // namespace eigengrain::model

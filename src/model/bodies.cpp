@@ -1,0 +1,81 @@
+#include "eigengrain/model/bodies.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace eigengrain::model {
+namespace {
+
+/// Spreads the low 21 bits of v to every third bit.
+std::uint64_t spread_bits(std::uint64_t v) {
+  v &= 0x1fffff;
+  v = (v | v << 32U) & 0x1f00000000ffff;
+  v = (v | v << 16U) & 0x1f0000ff0000ff;
+  v = (v | v << 8U) & 0x100f00f00f00f00f;
+  v = (v | v << 4U) & 0x10c30c30c30c30c3;
+  v = (v | v << 2U) & 0x1249249249249249;
+  return v;
+}
+
+template <class T>
+std::vector<T> gather(const std::vector<T>& column, std::span<const std::int32_t> order) {
+  std::vector<T> result;
+  result.reserve(order.size());
+  for (const std::int32_t row : order) result.push_back(column[static_cast<std::size_t>(row)]);
+  return result;
+}
+
+}  // namespace
+
+double sphere_mass(double radius, double density) {
+  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density;
+}
+
+double sphere_inertia(double radius, double mass) {
+  return 0.4 * mass * radius * radius;
+}
+
+Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
+  return {.identity = gather(bodies.identity, order),
+          .position = gather(bodies.position, order),
+          .radius = gather(bodies.radius, order),
+          .mass = gather(bodies.mass, order),
+          .inertia = gather(bodies.inertia, order),
+          .material = gather(bodies.material, order),
+          .fixed = gather(bodies.fixed, order)};
+}
+
+void sort_along_curve(Bodies& bodies) {
+  if (bodies.size() == 0) return;
+  Vec3 lower = bodies.position.front();
+  Vec3 upper = lower;
+  for (const Vec3& x : bodies.position) {
+    lower = lower.cwiseMin(x);
+    upper = upper.cwiseMax(x);
+  }
+  // One scale for the three axes keeps the cells of the curve cubic.
+  constexpr double cells = 2097151.0;  // 2^21 - 1
+  const double extent = (upper - lower).maxCoeff();
+  const double scale = extent > 0 ? cells / extent : 0.0;
+
+  std::vector<std::pair<std::uint64_t, std::int32_t>> keys(bodies.position.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Vec3 cell = (bodies.position[i] - lower) * scale;
+    keys[i] = {spread_bits(static_cast<std::uint64_t>(cell.x())) |
+                   spread_bits(static_cast<std::uint64_t>(cell.y())) << 1U |
+                   spread_bits(static_cast<std::uint64_t>(cell.z())) << 2U,
+               static_cast<std::int32_t>(i)};
+  }
+  std::sort(keys.begin(), keys.end(), [&](const auto& left, const auto& right) {
+    if (left.first != right.first) return left.first < right.first;
+    return bodies.identity[static_cast<std::size_t>(left.second)] <
+           bodies.identity[static_cast<std::size_t>(right.second)];
+  });
+  std::vector<std::int32_t> order(keys.size());
+  std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
+  bodies = reordered(bodies, order);
+}
+
+}  // namespace eigengrain::model

@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs every test. What is built and why: CONTRIBUTING.md.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+cmake/dependencies.sh
+# Everything stays on this machine: no network between MPI processes, and root may start them.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+jobs=${JOBS:-$(nproc)}
+
+run() { # run PRESET [ctest options]: configure, build and test one preset
+  local preset=$1
+  shift
+  cmake --preset "$preset" >/dev/null
+  cmake --build --preset "$preset" -j "$jobs"
+  ctest --preset "$preset" -j "$jobs" "$@"
+}
+
+run release
+run dev -L '^(unit|laws)$'
+run minimal
