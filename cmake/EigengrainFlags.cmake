@@ -11,6 +11,7 @@ add_library(eigengrain_warnings INTERFACE)
 target_compile_options(eigengrain_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual
   -Wunused -Woverloaded-virtual -Wdouble-promotion -Wextra-semi
+  -Wno-restrict  # false alarms of GCC 12 in std::string (PR105651)
   # One rule for fused multiply-add everywhere: only where the source asks for it, so that a result
   # does not depend on how the compiler happened to vectorise a loop (docs/architecture.md).
   -ffp-contract=off)

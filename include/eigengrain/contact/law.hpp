@@ -79,6 +79,10 @@ concept ContactLaw = requires(const L& law, const ContactMotion& motion, const t
   { L::description } -> std::convertible_to<std::string_view>;
   /// Builds the law from values in the order of its parameters.
   { L::from_values(values) } -> std::same_as<L>;
+  /// Whether this class is the one for these values, where several share a name.
+  { L::serves(values) } -> std::same_as<bool>;
+  /// The state of a contact that forms with this normal.
+  { law.formed(motion.normal) } -> std::same_as<typename L::State>;
   /// Whether the contact transmits anything; the others mean something only where this holds.
   { law.acts(motion, state) } -> std::same_as<bool>;
   /// Force after the motion; `next` receives the state that a commit would store.

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "eigengrain/assembly/unknowns.hpp"
+#include "eigengrain/contact/element.hpp"
+
+namespace eigengrain::assembly {
+
+/// The block with the rows and columns of fixed components set to zero.
+inline Mat3 masked(Mat3 block, std::uint8_t row_mask, std::uint8_t column_mask) {
+  for (int k = 0; k < Unknowns::block_size; ++k) {
+    if (((row_mask >> k) & 1) != 0) block.row(k).setZero();
+    if (((column_mask >> k) & 1) != 0) block.col(k).setZero();
+  }
+  return block;
+}
+
+/// Calls add(row block, column block, 3×3 block) for every part of a contact's K that has unknowns: 16 calls
+/// between two balls with rotations, 4 at a wall, fewer without rotations. For a body that touches its own
+/// image the same block is met several times; the parts add up.
+template <class Add>
+void scatter(const contact::ContactElement& element, const Unknowns& unknowns, const Add& add) {
+  const contact::ContactBlocks k = contact::stiffness_blocks(element);
+  const auto one_pair = [&](std::int32_t row_body, std::int32_t column_body, const Mat6& block) {
+    const auto rows = unknowns.of(row_body);
+    const auto columns = unknowns.of(column_body);
+    for (std::size_t i = 0; i < 2; ++i)
+      for (std::size_t j = 0; j < 2; ++j) {
+        if (rows[i] == Unknowns::none || columns[j] == Unknowns::none) continue;
+        const Mat3 part = block.block<3, 3>(static_cast<int>(3 * i), static_cast<int>(3 * j));
+        add(rows[i], columns[j], masked(part, unknowns.mask(rows[i]), unknowns.mask(columns[j])));
+      }
+  };
+  one_pair(element.a, element.a, k.aa);
+  if (element.b == contact::no_body) return;
+  one_pair(element.a, element.b, k.ab);
+  one_pair(element.b, element.a, k.ab.transpose());
+  one_pair(element.b, element.b, k.bb);
+}
+
+}  // namespace eigengrain::assembly

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "eigengrain/assembly/model.hpp"
+#include "eigengrain/contact/element.hpp"
+
+#include <concepts>
+#include <vector>
+
+namespace eigengrain::assembly {
+
+/// Whatever takes the stiffness of contacts one by one: a matrix, a list for a matrix-free product, bounds.
+template <class S>
+concept StiffnessSink = requires(S& sink, const contact::ContactElement& element) {
+  sink.add(element);
+};
+
+/// Hands the elastic stiffness of every acting contact to the sink, group after group, in the order of
+/// the contacts. Does not know what the sink fills. Cost O(contacts); nothing is allocated here.
+template <StiffnessSink Sink>
+void assemble_stiffness(const Model& model, Sink& sink) {
+  const contact::Placement placement = model.placement();
+  model.contacts.for_each_group([&](const auto& group) {
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
+      const contact::ContactMotion motion = contact::at_rest(geometry);
+      if (!group.law.acts(motion, group.states[c])) continue;
+      sink.add(contact::ContactElement{
+          .a = group.pairs[c].a,
+          .b = Kinematics::second_is_body ? group.pairs[c].b : contact::no_body,
+          .normal = geometry.normal,
+          .lever_a = geometry.lever_a,
+          .lever_b = geometry.lever_b,
+          .stiffness = group.law.stiffness(motion, group.states[c]),
+      });
+    }
+  });
+}
+
+/// The simplest sink: keeps the elements.
+struct ElementList {
+  std::vector<contact::ContactElement> elements;
+  void add(const contact::ContactElement& element) { elements.push_back(element); }
+};
+
+/// The stiffness of all acting contacts as a list.
+inline std::vector<contact::ContactElement> contact_elements(const Model& model) {
+  ElementList list;
+  list.elements.reserve(static_cast<std::size_t>(model.contacts.size()));
+  assemble_stiffness(model, list);
+  return std::move(list.elements);
+}
+
+}  // namespace eigengrain::assembly

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "eigengrain/contact/element.hpp"
+#include "eigengrain/model/bodies.hpp"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace eigengrain::assembly {
+
+/// Which unknowns a scene has. Every unknown is a vector, a block of three numbers.
+///
+/// A body may have two, u and θ. Not numbered are
+///   - bodies that no acting contact touches: they are set aside and reported;
+///   - θ of a body whose contacts have no shear or rotational stiffness;
+///   - vectors whose three components are fixed.
+/// A vector with one or two fixed components is numbered, and those components are masked: their rows and
+/// columns are zero in every matrix and are kept out of spectra (see free_components).
+class Unknowns {
+ public:
+  static constexpr int block_size = 3;
+  static constexpr std::int32_t none = -1;
+
+  Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements);
+
+  /// Bodies of the model, with unknowns or without.
+  std::int32_t bodies() const { return static_cast<std::int32_t>(block_.size()); }
+  /// Vector unknowns.
+  std::int32_t blocks() const { return static_cast<std::int32_t>(body_.size()); }
+  /// Numbers: three a block, masked ones included.
+  std::int64_t size() const { return block_size * static_cast<std::int64_t>(body_.size()); }
+
+  /// Block of the body's u or θ, or none.
+  std::int32_t translation(std::int32_t body) const { return block_[static_cast<std::size_t>(body)][0]; }
+  std::int32_t rotation(std::int32_t body) const { return block_[static_cast<std::size_t>(body)][1]; }
+  /// {u, θ} of a body; {none, none} for contact::no_body.
+  std::array<std::int32_t, 2> of(std::int32_t body) const {
+    return body == contact::no_body ? std::array{none, none} : block_[static_cast<std::size_t>(body)];
+  }
+
+  /// The way back: the body of a block, and whether the block is its θ.
+  std::int32_t body(std::int32_t block) const { return body_[static_cast<std::size_t>(block)]; }
+  bool is_rotation(std::int32_t block) const { return rotation_[static_cast<std::size_t>(block)] != 0; }
+  /// Bits 0-2: components of the block that are fixed.
+  std::uint8_t mask(std::int32_t block) const { return mask_[static_cast<std::size_t>(block)]; }
+
+  /// Numbers that are free to move, in increasing order: what spectra are made of.
+  std::vector<std::int32_t> free_components() const;
+
+  /// Bodies with unknowns (u or θ numbered).
+  std::int32_t moving_bodies() const { return moving_bodies_; }
+  /// Blocks that are a θ.
+  std::int32_t rotations() const { return rotations_; }
+  /// Bodies that are not fixed entirely, but that no acting contact touches.
+  const std::vector<std::int32_t>& set_aside() const { return set_aside_; }
+
+ private:
+  std::vector<std::array<std::int32_t, 2>> block_;
+  std::vector<std::int32_t> body_;
+  std::vector<std::uint8_t> rotation_;
+  std::vector<std::uint8_t> mask_;
+  std::vector<std::int32_t> set_aside_;
+  std::int32_t moving_bodies_ = 0;
+  std::int32_t rotations_ = 0;
+};
+
+}  // namespace eigengrain::assembly

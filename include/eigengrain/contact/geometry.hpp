@@ -1,0 +1,34 @@
+#pragma once
+
+#include "eigengrain/base/vec.hpp"
+#include "eigengrain/model/surroundings.hpp"
+
+namespace eigengrain::contact {
+
+/// Where two sides touch (seed eqs. 1.5-1.8).
+struct ContactGeometry {
+  Vec3 normal;     ///< n, unit, from the first side to the second
+  double overlap;  ///< U, m; positive when the surfaces interpenetrate
+  Vec3 lever_a;    ///< R_a = x_C - x_a, m
+  Vec3 lever_b;    ///< R_b = x_C - x_b, m; zero where the second side is a wall
+};
+
+/// Two balls: n = (x_b - x_a)/d, U = r_a + r_b - d, x_C = x_a + (r_a - U/2) n.
+/// x_b is the centre of the image that touches. Centres must differ.
+inline ContactGeometry ball_ball(const Vec3& x_a, double r_a, const Vec3& x_b, double r_b) {
+  const Vec3 branch = x_b - x_a;
+  const double distance = branch.norm();
+  const Vec3 n = branch / distance;
+  const double overlap = r_a + r_b - distance;
+  return {n, overlap, (r_a - 0.5 * overlap) * n, -(r_b - 0.5 * overlap) * n};
+}
+
+/// A ball and a one-sided plane: n = -(normal of the plane), d the signed distance of the centre from it,
+/// U = r - d, x_C = x + (r - U/2) n. A centre behind the plane keeps its contact (d < 0).
+inline ContactGeometry ball_plane(const Vec3& x, double r, const model::Plane& plane) {
+  const Vec3 n = -plane.normal;
+  const double overlap = r - (x - plane.point).dot(plane.normal);
+  return {n, overlap, (r - 0.5 * overlap) * n, Vec3::Zero()};
+}
+
+}  // namespace eigengrain::contact

@@ -1,0 +1,80 @@
+#pragma once
+
+#include "eigengrain/base/type_list.hpp"
+#include "eigengrain/contact/geometry.hpp"
+#include "eigengrain/contact/law.hpp"
+#include "eigengrain/model/bodies.hpp"
+#include "eigengrain/model/surroundings.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+/// How the motion of two sides becomes the motion of their contact: the B of K = BᵀDB.
+namespace eigengrain::contact {
+
+/// A contact is a triple: side a, side b (its meaning is the kinematics' own) and the periodic image of b.
+struct Pair {
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+  model::Image image{};
+};
+
+/// Where the sides of contacts are. `position` may be a trial position, apart from bodies.position.
+struct Placement {
+  std::span<const Vec3> position;  ///< [bodies] centres, m
+  std::span<const double> radius;  ///< [bodies] m
+  std::span<const model::Plane> walls;
+  const model::PeriodicCell& cell;
+};
+
+/// Side a is a ball, side b another ball (or an image of the same one).
+struct BallBall {
+  static constexpr std::string_view name = "ball-ball";
+  static constexpr bool second_is_body = true;
+
+  static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
+    const auto a = static_cast<std::size_t>(pair.a);
+    const auto b = static_cast<std::size_t>(pair.b);
+    return ball_ball(placement.position[a], placement.radius[a],
+                     placement.position[b] + placement.cell.shift(pair.image), placement.radius[b]);
+  }
+};
+
+/// Side a is a ball, side b a plane, which has no unknowns.
+struct BallPlane {
+  static constexpr std::string_view name = "ball-wall";
+  static constexpr bool second_is_body = false;
+
+  static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
+    const auto a = static_cast<std::size_t>(pair.a);
+    return ball_plane(placement.position[a], placement.radius[a],
+                      placement.walls[static_cast<std::size_t>(pair.b)]);
+  }
+};
+
+using KinematicsTypes = TypeList<BallBall, BallPlane>;
+
+/// Displacement and rotation of one side since the committed state.
+struct SideMotion {
+  Vec3 translation = Vec3::Zero();  ///< u, m
+  Vec3 rotation = Vec3::Zero();     ///< θ, rad
+};
+
+/// δ = (u_b + θ_b × R_b) - (u_a + θ_a × R_a), φ = θ_b - θ_a, with the levers of the present geometry.
+inline ContactMotion contact_motion(const ContactGeometry& geometry, const SideMotion& a,
+                                    const SideMotion& b) {
+  return {.normal = geometry.normal,
+          .overlap = geometry.overlap,
+          .displacement = (b.translation + b.rotation.cross(geometry.lever_b)) -
+                          (a.translation + a.rotation.cross(geometry.lever_a)),
+          .rotation = b.rotation - a.rotation,
+          .spin = 0.5 * (a.rotation + b.rotation)};
+}
+
+/// The motion of a contact that stands still.
+inline ContactMotion at_rest(const ContactGeometry& geometry) {
+  return contact_motion(geometry, {}, {});
+}
+
+}  // namespace eigengrain::contact

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "eigengrain/contact/laws/linear.hpp"
+
+#include <span>
+
+namespace eigengrain::contact {
+
+/// The linear law where it transmits no shear (friction or k_s zero): F = k_n U n while U > 0 (seed
+/// eq. 1.10). No history, so its contacts store none, and no rotations.
+class LinearFrictionless {
+ public:
+  struct State {};
+
+  static constexpr auto name = Linear::name;
+  static constexpr auto description = Linear::description;
+  static constexpr auto& parameters = Linear::parameters;
+
+  static bool serves(std::span<const double> values) {
+    return !Linear::from_values(values).needs_rotation() && !Linear::from_values(values).tension();
+  }
+  static LinearFrictionless from_values(std::span<const double> values) {
+    return LinearFrictionless(values[0]);
+  }
+
+  explicit LinearFrictionless(double kn) : kn_(kn) {}
+
+  bool needs_rotation() const { return false; }
+  State formed(const Vec3& /*normal*/) const { return {}; }
+
+  bool acts(const ContactMotion& motion, const State& /*old*/) const { return motion.overlap > 0; }
+
+  ContactForce evaluate(const ContactMotion& motion, const State& old, State& /*next*/) const {
+    if (!acts(motion, old)) return {};
+    return {.force = kn_ * motion.overlap * motion.normal};
+  }
+
+  ContactStiffness stiffness(const ContactMotion& /*motion*/, const State& /*old*/) const {
+    return {.normal = kn_};
+  }
+
+  ContactTangent tangent(const ContactMotion& motion, const State& old) const {
+    return {.translation = stiffness(motion, old).translation(motion.normal)};
+  }
+
+  double energy(const ContactMotion& motion, const State& old) const {
+    return acts(motion, old) ? 0.5 * kn_ * motion.overlap * motion.overlap : 0.0;
+  }
+
+ private:
+  double kn_;  // N/m
+};
+
+}  // namespace eigengrain::contact

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "eigengrain/assembly/unknowns.hpp"
+#include "eigengrain/contact/element.hpp"
+#include "eigengrain/model/bodies.hpp"
+
+#include <cstdint>
+#include <span>
+
+/// The true critical timestep: an eigenvalue of the whole system.
+namespace eigengrain::timestep {
+
+struct TruthOptions {
+  double tolerance = 1e-10;  ///< wished relative residual of the eigenpair
+  std::uint64_t seed = 1;    ///< of the random start vector
+  std::int64_t max_products = 20000;
+};
+
+struct Truth {
+  double dt = 0;           ///< 2/√λ_max, undamped, s; infinite where nothing resists
+  double limit = 0;        ///< of the cycle with the local damping in use, s
+  double lambda_max = 0;   ///< largest eigenvalue of M⁻¹K, s⁻²
+  double residual = 0;     ///< |A x - λ x| / |λ x| of the symmetric form A = M^-½ K M^-½
+  bool certified = false;  ///< whether λ_max is proven; an eigenpair with its residual proves that λ is an
+                           ///< eigenvalue, not that it is the largest
+  double seconds = 0;      ///< without start-up of libraries
+  std::int64_t products = 0;  ///< products with K
+};
+
+/// λ_max by Krylov-Schur iteration (SLEPc) on the matrix-free product, from a random Gaussian start vector.
+/// The same to the bit on any number of threads. Throws SolverError when it does not converge.
+///
+/// local_damping  α of the cycle; with one α for all bodies the limit is dt/√(1 + α) (theory §9)
+Truth critical_timestep(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
+                        std::span<const contact::ContactElement> elements, double local_damping = 0.0,
+                        const TruthOptions& options = {});
+
+}  // namespace eigengrain::timestep

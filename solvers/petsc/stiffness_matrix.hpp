@@ -1,0 +1,34 @@
+#pragma once
+
+#include "eigengrain/assembly/unknowns.hpp"
+#include "eigengrain/contact/element.hpp"
+
+#include "handles.hpp"
+
+#include <span>
+
+namespace eigengrain::petsc {
+
+/// K as an assembled PETSc matrix: BAIJ with blocks of 3, both triangles; masked rows and columns are zero.
+///
+/// The pattern is laid down once, for a contact graph; assemble() may then be called as often as stiffnesses
+/// change, without any allocation. It is a sink of assembly::assemble_stiffness:
+///
+///     matrix.begin(); assemble_stiffness(model, matrix); matrix.end();
+class StiffnessMatrix {
+ public:
+  /// elements: the contacts whose ends make the pattern; their stiffness is not read.
+  StiffnessMatrix(const assembly::Unknowns& unknowns, std::span<const contact::ContactElement> elements);
+
+  void begin();
+  void add(const contact::ContactElement& element);
+  void end();
+
+  Mat mat() const { return matrix_.get(); }
+
+ private:
+  const assembly::Unknowns* unknowns_;
+  Matrix matrix_;
+};
+
+}  // namespace eigengrain::petsc

@@ -1,0 +1,123 @@
+#include "eigengrain/timestep/truth.hpp"
+
+#include "eigengrain/assembly/mass.hpp"
+#include "eigengrain/assembly/product.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/timer.hpp"
+
+#include "petsc/handles.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace eigengrain::timestep {
+namespace {
+
+using assembly::StiffnessProduct;
+
+/// Basis vectors of the Krylov space. One restart keeps half of them; with 40 most packings need one or two.
+constexpr PetscInt krylov_vectors = 40;
+
+PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
+  StiffnessProduct* product = nullptr;
+  PetscCall(MatShellGetContext(matrix, &product));
+  const PetscScalar* from = nullptr;
+  PetscScalar* to = nullptr;
+  PetscCall(VecGetArrayRead(x, &from));
+  PetscCall(VecGetArrayWrite(y, &to));
+  const auto size = static_cast<std::size_t>(product->size());
+  product->apply({from, size}, {to, size});
+  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscCall(VecRestoreArrayWrite(y, &to));
+  return 0;
+}
+
+petsc::Matrix shell(StiffnessProduct& product) {
+  const auto size = static_cast<PetscInt>(product.size());
+  petsc::Matrix matrix;
+  EIGENGRAIN_PETSC(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &product, matrix.put()));
+  EIGENGRAIN_PETSC(MatShellSetOperation(matrix.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+  EIGENGRAIN_PETSC(MatSetOption(matrix.get(), MAT_SYMMETRIC, PETSC_TRUE));
+  return matrix;
+}
+
+/// Gaussian numbers at free components, zeros at masked ones (where scale is zero).
+petsc::Vector start_vector(Mat matrix, std::span<const double> scale, std::uint64_t seed) {
+  petsc::Vector vector;
+  EIGENGRAIN_PETSC(MatCreateVecs(matrix, vector.put(), nullptr));
+  PetscScalar* values = nullptr;
+  EIGENGRAIN_PETSC(VecGetArrayWrite(vector.get(), &values));
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> gaussian;
+  for (std::size_t k = 0; k < scale.size(); ++k) values[k] = scale[k] > 0 ? gaussian(random) : 0.0;
+  EIGENGRAIN_PETSC(VecRestoreArrayWrite(vector.get(), &values));
+  return vector;
+}
+
+petsc::Eigensolver largest_eigenvalue_solver(Mat matrix, Vec start, const TruthOptions& options) {
+  petsc::Eigensolver solver;
+  EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
+  EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), matrix, nullptr));
+  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_HEP));
+  EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
+  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
+  EIGENGRAIN_PETSC(EPSSetConvergenceTest(solver.get(), EPS_CONV_REL));
+  EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), 1, krylov_vectors, PETSC_DEFAULT));
+  const auto restarts = static_cast<PetscInt>(2 * options.max_products / krylov_vectors) + 1;
+  EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), options.tolerance, restarts));
+  EIGENGRAIN_PETSC(EPSSetInitialSpace(solver.get(), 1, &start));
+  EIGENGRAIN_PETSC(EPSSetFromOptions(solver.get()));
+  return solver;
+}
+
+/// |A x - λ x| / |λ x|, computed afresh, not the solver's own estimate.
+double relative_residual(Mat matrix, Vec x, double lambda) {
+  petsc::Vector r;
+  EIGENGRAIN_PETSC(VecDuplicate(x, r.put()));
+  EIGENGRAIN_PETSC(MatMult(matrix, x, r.get()));
+  EIGENGRAIN_PETSC(VecAXPY(r.get(), -lambda, x));
+  PetscReal residual = 0;
+  PetscReal norm = 0;
+  EIGENGRAIN_PETSC(VecNorm(r.get(), NORM_2, &residual));
+  EIGENGRAIN_PETSC(VecNorm(x, NORM_2, &norm));
+  return residual / (lambda * norm);
+}
+
+}  // namespace
+
+Truth critical_timestep(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
+                        std::span<const contact::ContactElement> elements, double local_damping,
+                        const TruthOptions& options) {
+  Truth truth{.dt = std::numeric_limits<double>::infinity(),
+              .limit = std::numeric_limits<double>::infinity()};
+  const std::vector<double> scale = assembly::inverse_sqrt_mass(bodies, unknowns);
+  if (scale.empty() || elements.empty()) return truth;
+  petsc::start();
+
+  const Stopwatch watch;
+  StiffnessProduct product(unknowns, elements, scale);
+  const petsc::Matrix matrix = shell(product);
+  const petsc::Vector x = start_vector(matrix.get(), scale, options.seed);
+  const petsc::Eigensolver solver = largest_eigenvalue_solver(matrix.get(), x.get(), options);
+  EIGENGRAIN_PETSC(EPSSolve(solver.get()));
+  PetscInt converged = 0;
+  EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
+  if (converged < 1)
+    throw SolverError(
+        fmt::format("the largest eigenvalue did not converge to a residual of {} in {} products with K; "
+                    "ask for less, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
+                    options.tolerance, product.products()));
+  EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &truth.lambda_max, nullptr, x.get(), nullptr));
+  truth.residual = relative_residual(matrix.get(), x.get(), truth.lambda_max);
+  truth.dt = 2.0 / std::sqrt(truth.lambda_max);
+  truth.limit = truth.dt / std::sqrt(1.0 + local_damping);
+  truth.products = product.products();
+  truth.seconds = watch.seconds();
+  return truth;
+}
+
+}  // namespace eigengrain::timestep

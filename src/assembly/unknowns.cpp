@@ -1,0 +1,63 @@
+#include "eigengrain/assembly/unknowns.hpp"
+
+namespace eigengrain::assembly {
+namespace {
+
+/// What the contacts of a body ask of it.
+struct Demand {
+  bool touched = false;
+  bool turned = false;  ///< some contact resists its rotation
+};
+
+std::vector<Demand> demands(std::int32_t bodies, std::span<const contact::ContactElement> elements) {
+  std::vector<Demand> result(static_cast<std::size_t>(bodies));
+  for (const contact::ContactElement& element : elements) {
+    const contact::ContactStiffness& k = element.stiffness;
+    const bool turns = k.shear > 0 || k.twist > 0 || k.bending > 0;
+    for (const std::int32_t body : {element.a, element.b}) {
+      if (body == contact::no_body) continue;
+      Demand& demand = result[static_cast<std::size_t>(body)];
+      demand.touched = true;
+      demand.turned = demand.turned || turns;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements)
+    : block_(bodies.position.size(), {none, none}) {
+  const std::vector<Demand> demand = demands(bodies.size(), elements);
+  const auto number = [&](std::int32_t body, int which, std::uint8_t fixed) {
+    if (fixed == 7) return;
+    block_[static_cast<std::size_t>(body)][static_cast<std::size_t>(which)] = blocks();
+    body_.push_back(body);
+    rotation_.push_back(static_cast<std::uint8_t>(which));
+    mask_.push_back(fixed);
+    rotations_ += which;
+  };
+  for (std::int32_t body = 0; body < bodies.size(); ++body) {
+    const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(body)];
+    const Demand& wanted = demand[static_cast<std::size_t>(body)];
+    if (!wanted.touched) {
+      if (!fixed.all()) set_aside_.push_back(body);
+      continue;
+    }
+    const std::int32_t before = blocks();
+    number(body, 0, fixed.translation());
+    if (wanted.turned) number(body, 1, fixed.rotation());
+    if (blocks() > before) ++moving_bodies_;
+  }
+}
+
+std::vector<std::int32_t> Unknowns::free_components() const {
+  std::vector<std::int32_t> result;
+  result.reserve(static_cast<std::size_t>(size()));
+  for (std::int32_t block = 0; block < blocks(); ++block)
+    for (int k = 0; k < block_size; ++k)
+      if (((mask(block) >> k) & 1) == 0) result.push_back(block_size * block + k);
+  return result;
+}
+
+}  // namespace eigengrain::assembly

@@ -1,0 +1,38 @@
+#include "eigengrain/contact/law_table.hpp"
+
+#include "eigengrain/contact/laws.hpp"
+
+#include <algorithm>
+
+namespace eigengrain::contact {
+namespace {
+
+template <class Law>
+void add_description(std::vector<LawDescription>& table) {
+  static_assert(ContactLaw<Law>);
+  const auto same_name = [](const LawDescription& entry) { return entry.name == Law::name; };
+  if (std::none_of(table.begin(), table.end(), same_name))
+    table.push_back({Law::name, Law::description, Law::parameters});
+}
+
+std::vector<LawDescription> describe() {
+  std::vector<LawDescription> table;
+  for_each_type(LawTypes{}, [&](auto law) { add_description<typename decltype(law)::type>(table); });
+  return table;
+}
+
+}  // namespace
+
+const std::vector<LawDescription>& law_descriptions() {
+  static const std::vector<LawDescription> table = describe();
+  return table;
+}
+
+const LawDescription* find_law(std::string_view name) {
+  const auto& table = law_descriptions();
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const LawDescription& entry) { return entry.name == name; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+}  // namespace eigengrain::contact
