@@ -1,0 +1,134 @@
+#include "coincidence.hpp"
+#include "scene_draft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace eigengrain::io {
+namespace {
+
+/// How many balls each material has.
+std::vector<std::int64_t> balls_of_materials(const model::Scene& scene) {
+  std::vector<std::int64_t> count(scene.materials.size());
+  for (const std::int32_t material : scene.bodies.material)
+    if (material >= 0) ++count[static_cast<std::size_t>(material)];
+  return count;
+}
+
+void check_densities(const SceneDraft& draft, Diagnostics& diagnostics) {
+  const std::vector<std::int64_t> balls = balls_of_materials(draft.scene);
+  for (std::size_t k = 0; k < balls.size(); ++k) {
+    const model::Material& material = draft.scene.materials[k];
+    if (balls[k] > 0 && material.density == 0)
+      diagnostics.add(
+          draft.material_places[k],
+          fmt::format("materials[{}]: density is missing, and balls are made of \"{}\"; add e.g. \"density: "
+                      "2500 kg/m3\"",
+                      k, material.name));
+  }
+}
+
+using MaterialPair = std::pair<std::int32_t, std::int32_t>;
+
+/// The pairs of materials that can meet, and whether balls meet balls there or a wall.
+std::set<std::pair<MaterialPair, bool>> meeting_pairs(const model::Scene& scene) {
+  const std::vector<std::int64_t> balls = balls_of_materials(scene);
+  std::set<std::pair<MaterialPair, bool>> pairs;
+  for (std::size_t a = 0; a < balls.size(); ++a) {
+    if (balls[a] == 0) continue;
+    const auto i = static_cast<std::int32_t>(a);
+    for (std::size_t b = a; b < balls.size(); ++b) {
+      // A single ball can still meet its own periodic image.
+      const bool meet = a == b ? balls[a] > 1 || scene.cell.any() : balls[b] > 0;
+      if (meet) pairs.insert({{i, static_cast<std::int32_t>(b)}, false});
+    }
+    for (const model::Plane& wall : scene.walls)
+      if (wall.material >= 0) pairs.insert({{i, wall.material}, true});
+  }
+  return pairs;
+}
+
+void check_rules(const Section& root, const SceneDraft& draft) {
+  const model::Scene& scene = draft.scene;
+  if (!draft.contacts_complete) return;
+  std::set<MaterialPair> told;
+  for (const auto& [pair, with_wall] : meeting_pairs(scene)) {
+    const MaterialPair sorted = std::minmax(pair.first, pair.second);
+    if (scene.rule_for(pair.first, pair.second) >= 0 || !told.insert(sorted).second) continue;
+    const std::string& first = scene.materials[static_cast<std::size_t>(pair.first)].name;
+    const std::string& second = scene.materials[static_cast<std::size_t>(pair.second)].name;
+    root.report("contacts",
+                fmt::format("no entry for balls of \"{0}\" against {2} of \"{1}\"; add e.g. "
+                            "\"- {{between: [{0}, {1}], law: linear, kn: 1e5 N/m}}\", or \"law: none\" if "
+                            "they do not see each other",
+                            first, second, with_wall ? "walls" : "balls"));
+  }
+}
+
+double height_above(const model::Plane& wall, const Vec3& x) {
+  return wall.normal.dot(x - wall.point);
+}
+
+void report_behind(const SceneDraft& draft, std::int32_t ball, const model::Plane& wall,
+                   Diagnostics& diagnostics) {
+  const Vec3& x = draft.scene.bodies.position[static_cast<std::size_t>(ball)];
+  const double height = height_above(wall, x);
+  const std::string where = height == 0 ? "on" : fmt::format("{:.6g} m behind", -height);
+  diagnostics.add(
+      draft.ball_places.of(ball),
+      fmt::format("ball {}: its centre ({}, {}, {}) lies {} {}, whose normal ({:.6g}, {:.6g}, {:.6g}) "
+                  "points to the active side; move the ball, or turn the wall around",
+                  ball, x[0], x[1], x[2], where, wall.name, wall.normal[0], wall.normal[1], wall.normal[2]),
+      "behind " + wall.name);
+}
+
+/// Balls that start on or behind a wall would be pushed nowhere or out of the wrong side.
+void check_walls(const SceneDraft& draft, Diagnostics& diagnostics) {
+  const model::Scene& scene = draft.scene;
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const model::Plane& wall = scene.walls[w];
+    const auto behind = [&](const Vec3& x) { return !(height_above(wall, x) > 0); };
+    const auto& centres = scene.bodies.position;
+    if (centres.size() > 1 && std::all_of(centres.begin(), centres.end(), behind)) {
+      diagnostics.add(
+          draft.wall_places[w],
+          fmt::format("{}: every ball lies behind it; its normal ({:.6g}, {:.6g}, {:.6g}) must point to the "
+                      "active side, where the balls are",
+                      wall.name, wall.normal[0], wall.normal[1], wall.normal[2]));
+      continue;
+    }
+    for (std::size_t i = 0; i < centres.size(); ++i)
+      if (behind(centres[i])) report_behind(draft, static_cast<std::int32_t>(i), wall, diagnostics);
+  }
+}
+
+std::string text_of(const Place& place) {
+  return place.line > 0 ? fmt::format("{}:{}", place.file, place.line) : place.file;
+}
+
+void check_coincidence(const SceneDraft& draft, Diagnostics& diagnostics) {
+  const model::Bodies& bodies = draft.scene.bodies;
+  for (const auto& [first, second] : coincident_balls(bodies.position, bodies.radius, draft.scene.cell)) {
+    const Vec3& x = bodies.position[static_cast<std::size_t>(second)];
+    diagnostics.add(
+        draft.ball_places.of(second),
+        fmt::format("ball {} has the centre ({}, {}, {}) of ball {} ({}), so their contact has no "
+                    "direction; move or remove one",
+                    second, x[0], x[1], x[2], first, text_of(draft.ball_places.of(first))),
+        "coincident");
+  }
+}
+
+}  // namespace
+
+void check_scene(const Section& root, const SceneDraft& draft) {
+  check_densities(draft, root.diagnostics());
+  check_rules(root, draft);
+  check_walls(draft, root.diagnostics());
+  check_coincidence(draft, root.diagnostics());
+}
+
+}  // namespace eigengrain::io

@@ -1,0 +1,93 @@
+#include "eigengrain/contact/law_table.hpp"
+#include "eigengrain/io/suggest.hpp"
+
+#include "scene_draft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace eigengrain::io {
+namespace {
+
+using model::ContactRule;
+
+/// Index of a material, any_material for "any", or nothing after a report.
+std::optional<std::int32_t> read_side(const Section& section, const std::string& name,
+                                      const model::Scene& scene) {
+  if (name == "any") return ContactRule::any_material;
+  std::vector<std::string> names{"any"};
+  for (std::size_t k = 0; k < scene.materials.size(); ++k) {
+    if (scene.materials[k].name == name) return static_cast<std::int32_t>(k);
+    names.push_back(scene.materials[k].name);
+  }
+  section.report("between", fmt::format("unknown material \"{}\"{}", name, did_you_mean(name, names)));
+  return std::nullopt;
+}
+
+bool read_between(const Section& section, const model::Scene& scene, ContactRule& rule) {
+  const auto names = section.texts("between");
+  if (!names) return false;
+  if (names->size() != 2) {
+    section.report("between",
+                   fmt::format("{} names; two are wanted, e.g. \"between: [any, any]\"", names->size()));
+    return false;
+  }
+  const auto first = read_side(section, names->front(), scene);
+  const auto second = read_side(section, names->back(), scene);
+  rule.first = first.value_or(-1);
+  rule.second = second.value_or(-1);
+  return first && second;
+}
+
+/// The value of one parameter, flags as 0 or 1. A missing one has been reported by check_keys.
+std::optional<double> read_parameter(const Section& section, const contact::ParameterDescription& parameter) {
+  if (parameter.kind == contact::ParameterDescription::Kind::quantity)
+    return section.quantity(parameter.name);
+  const auto flag = section.flag(parameter.name);
+  return flag ? std::optional(*flag ? 1.0 : 0.0) : std::nullopt;
+}
+
+void read_law(const Section& any_law, ContactRule& rule) {
+  const auto name = any_law.text("law");
+  if (!name) return any_law.check_keys();
+  const Section section = any_law.with_law(*name);
+  section.check_keys();
+  rule.law = *name;
+  const contact::LawDescription* law = contact::find_law(*name);
+  if (law == nullptr) return;  // "none"
+  for (const contact::ParameterDescription& parameter : law->parameters)
+    rule.parameters.push_back(read_parameter(section, parameter).value_or(0));
+}
+
+bool same_pair(const ContactRule& a, const ContactRule& b) {
+  return std::minmax(a.first, a.second) == std::minmax(b.first, b.second);
+}
+
+}  // namespace
+
+void read_contacts(const Section& root, SceneDraft& draft) {
+  std::vector<ContactRule>& rules = draft.scene.contacts;
+  std::vector<std::string> paths;
+  const std::int64_t mistakes_before = root.diagnostics().count();
+  const std::vector<Section> sections = root.sections("contacts");
+  draft.contacts_complete = root.diagnostics().count() == mistakes_before;
+  for (const Section& section : sections) {
+    ContactRule rule;
+    const bool known_pair = read_between(section, draft.scene, rule);
+    draft.contacts_complete = draft.contacts_complete && known_pair;
+    read_law(section, rule);
+    if (!known_pair) continue;
+    // A pair whose law has mistakes still counts as one that has a law: one report is enough.
+    const auto earlier =
+        std::find_if(rules.begin(), rules.end(), [&](const auto& r) { return same_pair(r, rule); });
+    if (earlier != rules.end())
+      section.report("between",
+                     fmt::format("never used: {} is for the same pair, and the first holds; remove one",
+                                 paths[static_cast<std::size_t>(earlier - rules.begin())]));
+    rules.push_back(std::move(rule));
+    paths.push_back(fmt::format("{} (line {})", section.path(), section.place().line));
+  }
+}
+
+}  // namespace eigengrain::io

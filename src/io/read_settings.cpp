@@ -1,0 +1,73 @@
+#include "scene_draft.hpp"
+
+#include <fmt/format.h>
+
+namespace eigengrain::io {
+
+void read_gravity(const Section& root, SceneDraft& draft) {
+  draft.scene.gravity = root.vector("gravity").value_or(Vec3::Zero());
+}
+
+void read_periodic(const Section& root, SceneDraft& draft) {
+  const auto section = root.section("periodic");
+  if (!section) return;
+  section->check_keys();
+  const auto lengths = section->vector("box");
+  const auto origin = section->vector("origin");
+  const auto axes = section->texts("axes");
+  if (axes && axes->empty()) section->report("axes", "empty; name at least one axis, or remove periodic");
+  if (!lengths || !origin || !axes) return;
+  model::PeriodicCell cell{.origin = *origin, .lengths = *lengths};
+  for (const std::string& axis : *axes) {
+    const int k = axis[0] - 'x';
+    if ((*lengths)[k] > 0) {
+      cell.periodic[static_cast<std::size_t>(k)] = true;
+    } else {
+      section->report("box", fmt::format("length {} m along {}; a periodic axis wants a length > 0",
+                                         (*lengths)[k], axis));
+    }
+  }
+  draft.scene.cell = cell;
+}
+
+void read_damping(const Section& root, SceneDraft& draft) {
+  const auto section = root.section("damping");
+  if (!section) return;
+  section->check_keys();
+  draft.scene.local_damping = section->quantity("local").value_or(draft.scene.local_damping);
+}
+
+void read_timestep(const Section& root, SceneDraft& draft) {
+  const auto section = root.section("timestep");
+  if (!section) return;
+  section->check_keys();
+  model::TimestepChoice& choice = draft.scene.timestep;
+  choice.safety = section->quantity("safety").value_or(choice.safety);
+  choice.dt = section->quantity("dt");
+  const auto policy = section->text("policy");
+  if (!policy) return;
+  const bool fixed = *policy == "fixed";
+  if (fixed)
+    choice.policy = model::TimestepPolicy::fixed;
+  else if (*policy == "bound")
+    choice.policy = model::TimestepPolicy::bound;
+  if (fixed && !section->has("dt")) section->report_missing("dt", ", which policy fixed needs");
+  if (!fixed && section->has("dt"))
+    section->report(
+        "dt", fmt::format("has no meaning with policy {}; write \"policy: fixed\" or remove dt", *policy));
+}
+
+void read_run(const Section& root, SceneDraft& draft) {
+  const auto section = root.section("run");
+  if (!section) return;
+  section->check_keys();
+  draft.scene.run.steps = section->integer("steps");
+  if (const auto until = section->section("until")) {
+    until->check_keys();
+    draft.scene.run.unbalanced = until->quantity("unbalanced");
+  }
+  if (!section->has("steps") && !section->has("until"))
+    section->report("says nothing; add \"steps: 10000\" or \"until: {unbalanced: 1e-5}\", or remove run");
+}
+
+}  // namespace eigengrain::io

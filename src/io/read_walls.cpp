@@ -1,0 +1,123 @@
+#include "scene_draft.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace eigengrain::io {
+namespace {
+
+constexpr std::array<char, 3> axis_names{'x', 'y', 'z'};
+
+/// An entry of `walls`, whose planes it adds to the draft.
+struct WallEntry {
+  const Section& section;
+  std::size_t number;  ///< from 1
+  std::int32_t material;
+  SceneDraft& draft;
+
+  void add(const Vec3& point, const Vec3& normal, std::string_view what) const {
+    draft.scene.walls.push_back({point, normal, material, fmt::format("wall {} ({})", number, what)});
+    draft.wall_places.push_back(section.place());
+  }
+};
+
+/// Components of a unit normal below this come from rounding: a repeated plane is then off by less than any
+/// position is.
+constexpr double negligible_component = 1e-12;
+
+void check_against_cell(const Section& plane, const Vec3& normal, const model::PeriodicCell& cell) {
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    if (cell.periodic[axis] && std::abs(normal[k]) > negligible_component)
+      plane.report("normal",
+                   fmt::format("has a component along {0}, which is periodic, so the plane would not "
+                               "repeat; give it none, or leave {0} out of periodic.axes",
+                               axis_names[axis]));
+  }
+}
+
+void read_plane(const WallEntry& wall, const Section& plane) {
+  plane.check_keys();
+  const auto point = plane.vector("point");
+  const auto normal = plane.vector("normal");
+  if (!normal) return;
+  const double length = normal->stableNorm();
+  if (length == 0)
+    return plane.report("normal", "zero, which has no direction; write e.g. \"normal: [0, 0, 1]\"");
+  // Scaling by the largest component first keeps very long and very short vectors from over- or underflowing.
+  const Vec3 unit = (*normal / normal->cwiseAbs().maxCoeff()).normalized();
+  check_against_cell(plane, unit, wall.draft.scene.cell);
+  if (point) wall.add(*point, unit, "plane");
+}
+
+/// The six sides of a box, as scene files name them.
+struct Side {
+  int axis = 0;
+  bool upper = false;
+
+  std::string name() const {
+    return fmt::format("{}{}", upper ? '+' : '-', axis_names[static_cast<std::size_t>(axis)]);
+  }
+};
+constexpr std::array<Side, 6> sides{{{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {2, true}}};
+
+bool check_corners(const Section& box, const Vec3& lower, const Vec3& upper) {
+  for (int k = 0; k < 3; ++k) {
+    if (lower[k] < upper[k]) continue;
+    box.report("max", fmt::format("{0} = {1} m is not above the {0} = {2} m of min",
+                                  axis_names[static_cast<std::size_t>(k)], upper[k], lower[k]));
+    return false;
+  }
+  return true;
+}
+
+/// A wall across a periodic axis would cut the cell.
+void check_open_along_cell(const Section& box, const std::vector<Side>& closed,
+                           const model::PeriodicCell& cell) {
+  std::string missing;
+  for (const Side& side : closed)
+    if (cell.periodic[static_cast<std::size_t>(side.axis)])
+      missing += fmt::format("{}{}", missing.empty() ? "" : ", ", side.name());
+  if (!missing.empty())
+    box.report("open",
+               fmt::format("the sides {} stand across axes that are periodic; add them to open", missing));
+}
+
+void read_box(const WallEntry& wall, const Section& box) {
+  box.check_keys();
+  const auto lower = box.vector("min");
+  const auto upper = box.vector("max");
+  const auto open = box.texts("open");
+  if (!lower || !upper || !open || !check_corners(box, *lower, *upper)) return;
+  std::vector<Side> closed;
+  for (const Side& side : sides)
+    if (std::find(open->begin(), open->end(), side.name()) == open->end()) closed.push_back(side);
+  if (closed.empty()) return box.report("open", "all six sides, which leaves no wall; remove the box");
+  check_open_along_cell(box, closed, wall.draft.scene.cell);
+  for (const Side& side : closed)
+    wall.add(side.upper ? *upper : *lower, (side.upper ? -1.0 : 1.0) * Vec3::Unit(side.axis),
+             "box " + side.name());
+}
+
+}  // namespace
+
+void read_walls(const Section& root, SceneDraft& draft) {
+  std::size_t number = 0;
+  for (const Section& section : root.sections("walls")) {
+    section.check_keys();
+    const std::int32_t material = read_material(section, "material", draft.scene);
+    const WallEntry wall{section, ++number, material, draft};
+    if (section.has("plane") == section.has("box")) {
+      section.report(
+          "either a plane or a box is wanted, e.g. \"plane: {point: [0, 0, 0], normal: [0, 0, 1]}\"");
+      continue;
+    }
+    if (const auto plane = section.section("plane")) read_plane(wall, *plane);
+    if (const auto box = section.section("box")) read_box(wall, *box);
+  }
+}
+
+}  // namespace eigengrain::io

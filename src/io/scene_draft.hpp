@@ -1,0 +1,56 @@
+#pragma once
+
+#include "eigengrain/io/diagnostics.hpp"
+#include "eigengrain/model/scene.hpp"
+
+#include "section.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace eigengrain::io {
+
+/// Where each ball stands: a file (by number) and a line, so that a million balls cost little.
+struct BallPlaces {
+  std::vector<std::string> files;
+  std::vector<std::int32_t> file;  ///< index into files
+  std::vector<std::int32_t> line;
+
+  Place of(std::int32_t ball) const;
+};
+
+/// A scene while it is read, with the places that later checks name. A material of -1 stands for a name that
+/// is unknown and has been reported.
+struct SceneDraft {
+  model::Scene scene;
+  std::filesystem::path folder;  ///< that paths are relative to
+  BallPlaces ball_places;
+  std::vector<Place> material_places;
+  std::vector<Place> wall_places;
+  bool contacts_complete = true;  ///< no entry was left out because of a mistake
+};
+
+/// One function for each section of the scene; each reads its own keys only. Those that use the materials
+/// come after read_materials, read_balls and read_walls after read_periodic.
+void read_materials(const Section& root, SceneDraft& draft);
+void read_periodic(const Section& root, SceneDraft& draft);
+void read_contacts(const Section& root, SceneDraft& draft);
+void read_balls(const Section& root, SceneDraft& draft);
+void read_walls(const Section& root, SceneDraft& draft);
+void read_gravity(const Section& root, SceneDraft& draft);
+void read_damping(const Section& root, SceneDraft& draft);
+void read_timestep(const Section& root, SceneDraft& draft);
+void read_run(const Section& root, SceneDraft& draft);
+
+/// Index of the material that the key names; -1, after a report, if there is none, and -1 if the key is
+/// absent.
+std::int32_t read_material(const Section& section, std::string_view key, const model::Scene& scene);
+
+/// What only the whole scene can tell: materials without density, pairs without a law, balls behind walls,
+/// balls at one place.
+void check_scene(const Section& root, const SceneDraft& draft);
+
+}  // namespace eigengrain::io

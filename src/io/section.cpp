@@ -1,0 +1,279 @@
+#include "section.hpp"
+
+#include "eigengrain/base/assert.hpp"
+#include "eigengrain/io/quantity.hpp"
+#include "eigengrain/io/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace eigengrain::io {
+namespace {
+
+/// The default of a key as a node, so that defaults are read the way the scene is.
+Node fallback_node(const KeyDescription& key) {
+  static const std::string file = "default";
+  Diagnostics diagnostics;
+  Node node = parse_yaml(key.fallback, file, diagnostics);
+  EIGENGRAIN_ASSERT(!diagnostics.any(), key.path, key.fallback);
+  return node;
+}
+
+std::string wanted(const KeyDescription& key) {
+  switch (key.kind) {
+    case KeyKind::section:
+      return "a section";
+    case KeyKind::section_list:
+      return "a list of sections";
+    case KeyKind::vector:
+      return "a list of three values";
+    case KeyKind::texts:
+    case KeyKind::words:
+      return "a list of words";
+    default:
+      return "a single value";
+  }
+}
+
+std::string example_line(const KeyDescription& key) {
+  return fmt::format("\"{}: {}\"", key.name(), key.example);
+}
+
+}  // namespace
+
+Section::Section(const Node& node, std::string path, std::string_view pattern, Diagnostics& diagnostics,
+                 std::string_view law)
+    : node_(&node),
+      path_(std::move(path)),
+      pattern_(pattern),
+      law_(law),
+      keys_(&section_keys(pattern, law)),
+      diagnostics_(&diagnostics) {}
+
+Section Section::with_law(std::string_view law) const {
+  return {*node_, path_, pattern_, *diagnostics_, law};
+}
+
+void Section::check_keys() const {
+  for (const Node& child : node_->children) {
+    const bool known =
+        std::any_of(keys_->begin(), keys_->end(), [&](const auto* key) { return key->name() == child.key; });
+    if (!known) report_unknown_key(child);
+  }
+  // Without its law it is open what a contact needs.
+  for (const KeyDescription* key : *keys_)
+    if (key->required && (key->law.empty() || !law_.empty()) && !has(key->name()))
+      report_missing(key->name());
+}
+
+void Section::report_unknown_key(const Node& child) const {
+  std::vector<std::string> names;
+  for (const KeyDescription* key : *keys_) names.emplace_back(key->name());
+  const std::string guess = did_you_mean(child.key, names);
+  diagnostics_->add(child.place(), fmt::format("{}: unknown key{} ({})", path_of(child.key), guess, takes()),
+                    fmt::format("{}: unknown key", pattern_));
+}
+
+std::string Section::takes() const {
+  std::string names;
+  for (const KeyDescription* key : *keys_) {
+    if (!law_.empty() && key->law.empty()) continue;  // what the user looks for is a parameter of the law
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", key->name());
+  }
+  if (!law_.empty())
+    return fmt::format("a {} contact takes {}", law_, names.empty() ? "no parameters" : names);
+  if (pattern_.empty()) return fmt::format("a scene takes {}", names);
+  return fmt::format("{} takes {}", pattern_, names);
+}
+
+std::optional<double> Section::quantity(std::string_view key) const {
+  const KeyDescription& description = describe(key);
+  if (const Node* node = value(key, Node::Kind::scalar)) return read_number(*node, path_of(key), description);
+  if (has(key) || description.fallback.empty()) return std::nullopt;
+  return read_quantity(description.fallback, description.unit).value;
+}
+
+std::optional<Vec3> Section::vector(std::string_view key) const {
+  const KeyDescription& description = describe(key);
+  const Node fallback = has(key) || description.fallback.empty() ? Node() : fallback_node(description);
+  const Node* node = has(key) ? value(key, Node::Kind::list) : &fallback;
+  if (node == nullptr || node->kind == Node::Kind::null) return std::nullopt;
+  if (node->children.size() != 3) {
+    report(key,
+           fmt::format("{} values; three are wanted, e.g. {}", node->children.size(), description.example));
+    return std::nullopt;
+  }
+  Vec3 result;
+  bool complete = true;
+  for (int k = 0; k < 3; ++k) {
+    const auto component = read_number(node->children[static_cast<std::size_t>(k)],
+                                       fmt::format("{}[{}]", path_of(key), k), description);
+    complete = complete && component.has_value();
+    result[k] = component.value_or(0);
+  }
+  return complete ? std::optional(result) : std::nullopt;
+}
+
+std::optional<std::int64_t> Section::integer(std::string_view key) const {
+  const Node* node = value(key, Node::Kind::scalar);
+  if (node == nullptr) return std::nullopt;
+  const IntegerResult number = read_integer(node->text);
+  const KeyDescription& description = describe(key);
+  if (!number.value) {
+    report(key, number.problem);
+  } else if (!description.range.contains(static_cast<double>(*number.value))) {
+    report(key, fmt::format("{}; a whole number {} is wanted", *number.value, description.range.text()));
+  } else {
+    return *number.value;
+  }
+  return std::nullopt;
+}
+
+std::optional<bool> Section::flag(std::string_view key) const {
+  const KeyDescription& description = describe(key);
+  const Node* node = value(key, Node::Kind::scalar);
+  if (node == nullptr && (has(key) || description.fallback.empty())) return std::nullopt;
+  const std::string& text = node != nullptr ? node->text : description.fallback;
+  if (text == "true") return true;
+  if (text == "false") return false;
+  report(key, fmt::format("\"{}\"; write true or false", text));
+  return std::nullopt;
+}
+
+std::optional<std::string> Section::text(std::string_view key) const {
+  const KeyDescription& description = describe(key);
+  if (const Node* node = value(key, Node::Kind::scalar)) return read_word(*node, path_of(key), description);
+  if (has(key) || description.fallback.empty()) return std::nullopt;
+  return description.fallback;
+}
+
+std::optional<std::vector<std::string>> Section::texts(std::string_view key) const {
+  const KeyDescription& description = describe(key);
+  const Node* node = node_->find(key);
+  if (node == nullptr && description.fallback.empty()) return std::nullopt;
+  const Node fallback = node == nullptr ? fallback_node(description) : Node();
+  if (node == nullptr) node = &fallback;
+  const bool single = node->kind == Node::Kind::scalar;
+  if (!single && node != &fallback) node = value(key, Node::Kind::list);
+  if (node == nullptr) return std::nullopt;
+
+  const std::span<const Node> entries = single ? std::span(node, 1) : std::span(node->children);
+  std::vector<std::string> result;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const std::string path = single ? path_of(key) : fmt::format("{}[{}]", path_of(key), k);
+    if (const auto word = read_word(entries[k], path, description)) result.push_back(*word);
+  }
+  return result.size() == entries.size() ? std::optional(result) : std::nullopt;
+}
+
+std::optional<Section> Section::section(std::string_view key) const {
+  const Node* node = value(key, Node::Kind::map);
+  if (node == nullptr) return std::nullopt;
+  return Section(*node, path_of(key), describe(key).path, *diagnostics_);
+}
+
+std::vector<Section> Section::sections(std::string_view key) const {
+  std::vector<Section> result;
+  const Node* node = value(key, Node::Kind::list);
+  if (node == nullptr) return result;
+  const KeyDescription& description = describe(key);
+  const std::string pattern = description.path + "[]";
+  for (std::size_t k = 0; k < node->children.size(); ++k) {
+    const Node& child = node->children[k];
+    std::string path = fmt::format("{}[{}]", path_of(key), k);
+    if (child.kind == Node::Kind::map)
+      result.emplace_back(child, std::move(path), pattern, *diagnostics_);
+    else
+      report_at(child, path,
+                fmt::format("{} stands where a section is wanted, e.g. \"{}: {}\"", kind_name(child.kind),
+                            key, description.example));
+  }
+  return result;
+}
+
+std::optional<double> Section::read_number(const Node& node, const std::string& path,
+                                           const KeyDescription& key) const {
+  if (node.kind != Node::Kind::scalar) {
+    report_at(node, path, fmt::format("{} stands where a number is wanted", kind_name(node.kind)));
+    return std::nullopt;
+  }
+  const QuantityResult number = read_quantity(node.text, key.unit);
+  if (!number.value) {
+    report_at(node, path, number.problem);
+  } else if (!key.range.contains(*number.value)) {
+    report_at(node, path,
+              fmt::format("\"{}\" is out of range; a value {} is wanted, e.g. {}", node.text,
+                          key.range.text(), example_line(key)));
+  } else {
+    return number.value;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Section::read_word(const Node& node, const std::string& path,
+                                              const KeyDescription& key) const {
+  if (node.kind != Node::Kind::scalar || node.text.empty()) {
+    const std::string_view found = node.kind == Node::Kind::scalar ? "an empty text" : kind_name(node.kind);
+    report_at(node, path, fmt::format("{} stands where a word is wanted, e.g. {}", found, example_line(key)));
+    return std::nullopt;
+  }
+  if (key.words.empty() || std::find(key.words.begin(), key.words.end(), node.text) != key.words.end())
+    return node.text;
+  std::string choice;
+  for (const std::string& word : key.words) choice += fmt::format("{}{}", choice.empty() ? "" : ", ", word);
+  report_at(node, path,
+            fmt::format("\"{}\" is none of {}{}", node.text, choice, did_you_mean(node.text, key.words)));
+  return std::nullopt;
+}
+
+/// The node of a key if it is of the kind wanted; what stands there otherwise is reported.
+const Node* Section::value(std::string_view key, Node::Kind kind) const {
+  const Node* node = node_->find(key);
+  if (node == nullptr || node->kind == kind) return node;
+  const KeyDescription& description = describe(key);
+  if (node->kind == Node::Kind::null)
+    report(key, fmt::format("empty; give it a value, e.g. {}, or remove the key", example_line(description)));
+  else
+    report(key, fmt::format("{} stands where {} is wanted, e.g. {}", kind_name(node->kind),
+                            wanted(description), example_line(description)));
+  return nullptr;
+}
+
+void Section::report(std::string_view key, std::string_view message) const {
+  const Node* node = node_->find(key);
+  report_at(node != nullptr ? *node : *node_, path_of(key), message);
+}
+
+void Section::report(std::string_view message) const {
+  report_at(*node_, path_, message);
+}
+
+void Section::report_missing(std::string_view key, std::string_view why) const {
+  const std::string section = path_.empty() ? "" : path_ + ": ";
+  diagnostics_->add(
+      place(), fmt::format("{}{} is missing{}; add e.g. {}", section, key, why, example_line(describe(key))),
+      fmt::format("{}.{} missing", pattern_, key));
+}
+
+void Section::report_at(const Node& node, std::string_view path, std::string_view message) const {
+  // In a long list the same key is likely to have the same mistake, whatever the entry.
+  const std::string_view inside = path.substr(std::min(path.size(), path_.size()));
+  diagnostics_->add(node.place(), path.empty() ? std::string(message) : fmt::format("{}: {}", path, message),
+                    fmt::format("{}{}", pattern_, inside));
+}
+
+const KeyDescription& Section::describe(std::string_view key) const {
+  const auto found =
+      std::find_if(keys_->begin(), keys_->end(), [&](const auto* k) { return k->name() == key; });
+  EIGENGRAIN_ASSERT(found != keys_->end(), pattern_, key);
+  return **found;
+}
+
+std::string Section::path_of(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+}  // namespace eigengrain::io

@@ -1,0 +1,115 @@
+#include "eigengrain/contact/law_table.hpp"
+#include "eigengrain/io/schema.hpp"
+#include "eigengrain/io/units.hpp"
+
+#include "unit/io_support.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+namespace eigengrain::io {
+namespace {
+
+TEST(Schema, DocumentationIsWhatTheTableSays) {
+  std::ifstream file(EIGENGRAIN_EXAMPLES "/../docs/scene-schema.md");
+  std::ostringstream text;
+  text << file.rdbuf();
+  // To write it anew: EIGENGRAIN_UPDATE_DOCS=1 ctest -R Schema
+  if (std::getenv("EIGENGRAIN_UPDATE_DOCS") != nullptr)
+    std::ofstream(EIGENGRAIN_EXAMPLES "/../docs/scene-schema.md") << schema_markdown();
+  else
+    EXPECT_EQ(text.str(), schema_markdown());
+}
+
+TEST(Schema, UnitsCanBeRead) {
+  for (const KeyDescription& key : scene_schema())
+    EXPECT_EQ(parse_unit(key.unit).problem, "") << key.path << ": " << key.unit;
+}
+
+TEST(Schema, EveryKeyStandsOnceAndInASectionOfItsOwn) {
+  for (const KeyDescription& key : scene_schema()) {
+    int same = 0;
+    bool parent = key.section().empty();
+    for (const KeyDescription& other : scene_schema()) {
+      same += other.path == key.path && other.law == key.law;
+      parent = parent || other.path == key.section() || other.path + "[]" == key.section();
+    }
+    EXPECT_EQ(same, 1) << key.path;
+    EXPECT_TRUE(parent) << key.path;
+    EXPECT_FALSE(key.example.empty()) << key.path;
+    EXPECT_FALSE(key.description.empty()) << key.path;
+  }
+}
+
+/// Scenes that between them have a place for every key.
+std::vector<std::string> scenes_with_room() {
+  const std::string materials = "materials: [{name: grain, density: 2500}]\n";
+  const std::string ball = "balls: [{position: [0.1, 0.1, 0.1], radius: 5 mm, material: grain}]\n";
+  const std::string file = "balls: [{file: packing.txt, material: grain}]\n";
+  const std::string plane = "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]\n";
+  const std::string box = "walls: [{box: {min: [0, 0, 0], max: [1, 1, 1]}, material: grain}]\n";
+  const std::string periodic = "periodic: {box: [1, 1, 1]}\n";
+  const std::string fixed = "timestep: {policy: fixed, dt: 1e-5}\n";
+  const std::string no_law = "contacts: [{between: [grain, grain], law: none}]\n";
+  std::vector<std::string> scenes{materials + no_law + ball, materials + no_law + file + fixed,
+                                  materials + no_law + ball + plane, materials + no_law + ball + box,
+                                  materials + no_law + ball + periodic};
+  for (const contact::LawDescription& law : contact::law_descriptions()) {
+    std::string needed;
+    for (const KeyDescription* key : section_keys("contacts[]", law.name))
+      if (key->required && !key->law.empty()) needed += fmt::format(", {}: {}", key->name(), key->example);
+    scenes.push_back(materials + ball +
+                     fmt::format("contacts: [{{between: [any, any], law: {}{}}}]\n", law.name, needed));
+  }
+  return scenes;
+}
+
+/// "balls[].radius" -> "balls.0.radius"
+std::string first_entry(std::string path) {
+  for (std::size_t at = path.find("[]"); at != std::string::npos; at = path.find("[]"))
+    path.replace(at, 2, ".0");
+  return path;
+}
+
+TEST(Schema, EveryKeyIsAcceptedWithItsExampleAndItsDefault) {
+  const TemporaryFolder folder;
+  folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
+  const auto accepted = [&](const std::string& assignment, std::string& reasons) {
+    for (const std::string& scene : scenes_with_room()) {
+      const std::vector<Mistake> mistakes = mistakes_in(scene, {assignment}, folder.path());
+      if (mistakes.empty()) return true;
+      reasons += mistakes.front().text() + "\n";
+    }
+    return false;
+  };
+  for (const KeyDescription& key : scene_schema()) {
+    std::string reasons;
+    EXPECT_TRUE(accepted(first_entry(key.path) + "=" + key.example, reasons)) << reasons;
+    if (!key.fallback.empty()) {
+      EXPECT_TRUE(accepted(first_entry(key.path) + "=" + key.fallback, reasons)) << reasons;
+    }
+  }
+}
+
+TEST(Schema, EverySectionRejectsUnknownKeys) {
+  const TemporaryFolder folder;
+  folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
+  for (const KeyDescription& key : scene_schema()) {
+    std::string path = first_entry(key.path);
+    if (key.kind == KeyKind::section_list)
+      path += ".0";
+    else if (key.kind != KeyKind::section)
+      continue;
+    std::string all;
+    for (const std::string& scene : scenes_with_room())
+      for (const std::string& text : texts_of(mistakes_in(scene, {path + ".zzz=1"}, folder.path())))
+        all += text + "\n";
+    EXPECT_THAT(all, testing::HasSubstr("zzz: unknown key")) << path;
+  }
+}
+
+}  // namespace
+}  // namespace eigengrain::io
