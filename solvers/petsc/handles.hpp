@@ -1,6 +1,6 @@
 #pragma once
 
-#include "session.hpp"
+#include "error.hpp"
 
 #include <slepceps.h>
 

@@ -1,6 +1,8 @@
-#include "session.hpp"
+#include "eigengrain/petsc/session.hpp"
 
 #include "eigengrain/base/error.hpp"
+
+#include "error.hpp"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

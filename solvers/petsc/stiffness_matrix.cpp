@@ -1,6 +1,7 @@
 #include "stiffness_matrix.hpp"
 
 #include "eigengrain/assembly/scatter.hpp"
+#include "eigengrain/petsc/session.hpp"
 
 #include <algorithm>
 #include <vector>

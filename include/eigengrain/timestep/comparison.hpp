@@ -1,0 +1,38 @@
+#pragma once
+
+#include "eigengrain/assembly/model.hpp"
+#include "eigengrain/timestep/truth.hpp"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// Estimated against true critical timesteps: the main job.
+namespace eigengrain::timestep {
+
+/// An estimate of the undamped critical timestep, before any safety factor, judged against the truth.
+struct Estimate {
+  std::string name;
+  std::string basis;         ///< one line: where it comes from
+  bool proven = false;       ///< whether theory proves it safe, not only this scene
+  double dt = 0;             ///< s
+  double ratio_to_true = 0;  ///< dt over Truth::dt
+  bool safe = false;         ///< whether it does not exceed the truth in this scene
+  double seconds = 0;
+  std::int64_t products = 0;  ///< products with K
+};
+
+struct Comparison {
+  std::int64_t bodies = 0;
+  std::int64_t contacts = 0;
+  std::int64_t unknowns = 0;   ///< free components
+  std::int64_t set_aside = 0;  ///< bodies without acting contacts, which are no part of it
+  Truth truth;
+  std::vector<Estimate> estimates;
+};
+
+/// The true critical timestep of the model as it stands, and every estimate beside it.
+Comparison compare(const assembly::Model& model, const TruthOptions& options = {});
+
+}  // namespace eigengrain::timestep

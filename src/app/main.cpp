@@ -1,0 +1,79 @@
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/parallel.hpp"
+#include "eigengrain/io/schema.hpp"
+
+#include "verbs.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <exception>
+#include <new>
+
+namespace eigengrain::app {
+namespace {
+
+constexpr int failure = 1;      // the scene or a solver
+constexpr int usage_error = 2;  // the command line
+
+/// A verb with what all verbs take.
+CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& what, Options& options,
+                   void (*run)(const Options&)) {
+  CLI::App* verb = program.add_subcommand(name, what);
+  verb->add_option("scene", options.scene, "scene file (YAML)")->required()->type_name("SCENE.yaml");
+  verb->add_option("--json", options.json, "write the result there as JSON")->type_name("FILE");
+  verb->add_option("--set", options.overrides,
+                   "override a key of the scene, e.g. contacts.0.kn=2e5; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  verb->add_option_function<int>("--threads", set_threads, "threads; default: one a processor")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  verb->callback([&options, run] { run(options); });
+  return verb;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Discrete elements with their true stiffness matrix.", "eigengrain");
+  program.set_version_flag("--version", EIGENGRAIN_VERSION);
+  program.require_subcommand(1);
+  program.failure_message(CLI::FailureMessage::help);
+  Options options;
+  add_verb(program, "check", "read a scene, report every mistake, say what the model will consist of",
+           options, check);
+#ifdef EIGENGRAIN_PETSC
+  add_verb(program, "timestep", "estimated and true critical timestep", options, timestep)
+      ->add_option("--petsc", options.petsc, "options for PETSc and SLEPc, e.g. \"-eps_ncv 80\"")
+      ->type_name("OPTIONS");
+#endif
+  program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
+    fmt::print("{}", io::schema_markdown());
+  });
+  try {
+    program.parse(argc, argv);
+    return 0;
+  } catch (const CLI::Success& success) {
+    return program.exit(success);
+  } catch (const CLI::ParseError& error) {
+    program.exit(error);
+    return usage_error;
+  } catch (const InputError& error) {
+    const std::size_t count = error.mistakes().size();
+    if (count > 1) fmt::print(stderr, "{} mistakes:\n", count);
+    fmt::print(stderr, "{}\n", error.what());
+    return failure;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "not enough memory for this scene\n");
+    return failure;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return failure;
+  }
+}
+
+}  // namespace
+}  // namespace eigengrain::app
+
+int main(int argc, char** argv) {
+  return eigengrain::app::run(argc, argv);
+}

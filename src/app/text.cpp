@@ -1,0 +1,37 @@
+#include "text.hpp"
+
+#include "eigengrain/base/error.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cstring>
+#include <fstream>
+
+namespace eigengrain::app {
+
+std::string grouped(std::int64_t number) {
+  std::string digits = fmt::format("{}", number);
+  const std::size_t first = number < 0 ? 1 : 0;
+  for (std::size_t i = digits.size(); i > first + 3;) {
+    i -= 3;
+    digits.insert(i, ",");
+  }
+  return digits;
+}
+
+std::string counted(std::int64_t number, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
+}
+
+void write_json(const std::string& file, const nlohmann::ordered_json& document) {
+  if (file.empty()) return;
+  std::ofstream out(file);
+  out << document.dump(2) << '\n';
+  out.flush();
+  if (!out)
+    throw InputError(fmt::format("--json {}: cannot write there ({}); name a file in a folder that exists",
+                                 file, std::strerror(errno)));
+}
+
+}  // namespace eigengrain::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace eigengrain::app {
+
+/// 27440 -> "27,440".
+std::string grouped(std::int64_t number);
+/// "1 body", "10,000 bodies".
+std::string counted(std::int64_t number, const std::string& one, const std::string& many);
+
+/// Writes the document to the file, or nothing where the name is empty. Throws InputError if it cannot.
+void write_json(const std::string& file, const nlohmann::ordered_json& document);
+
+}  // namespace eigengrain::app

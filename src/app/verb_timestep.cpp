@@ -1,0 +1,124 @@
+#include "eigengrain/assembly/model.hpp"
+#include "eigengrain/io/scene_reader.hpp"
+#include "eigengrain/petsc/session.hpp"
+#include "eigengrain/timestep/comparison.hpp"
+
+#include "text.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace eigengrain::app {
+namespace {
+
+using nlohmann::ordered_json;
+using timestep::Comparison;
+using timestep::Estimate;
+
+/// The step that the scene's own policy would take, against the limit of its damped cycle.
+struct PolicyStep {
+  std::string how;
+  double dt = 0;
+};
+
+PolicyStep policy_step(const model::TimestepChoice& choice, const Comparison& comparison) {
+  const auto of = [&](const char* name) {
+    for (const Estimate& estimate : comparison.estimates)
+      if (estimate.name == name) return choice.safety * estimate.dt;
+    return 0.0;
+  };
+  switch (choice.policy) {
+    case model::TimestepPolicy::fixed:
+      return {"fixed", choice.dt.value_or(0.0)};
+    case model::TimestepPolicy::bound:
+      return {fmt::format("bound: {:g} of scaled-block-bound", choice.safety), of("scaled-block-bound")};
+    case model::TimestepPolicy::estimate:
+      break;
+  }
+  return {fmt::format("estimate: {:g} of diagonal", choice.safety), of("diagonal")};
+}
+
+/// JSON has no infinity: a step without limit is null.
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
+  ordered_json estimates = ordered_json::array();
+  for (const Estimate& e : c.estimates)
+    estimates.push_back({{"name", e.name},
+                         {"dt", number(e.dt)},
+                         {"ratio_to_true", number(e.ratio_to_true)},
+                         {"safe", e.safe},
+                         {"proven", e.proven},
+                         {"seconds", e.seconds},
+                         {"products", e.products}});
+  return {{"bodies", c.bodies},
+          {"contacts", c.contacts},
+          {"unknowns", c.unknowns},
+          {"set_aside", c.set_aside},
+          {"true",
+           {{"dt", number(c.truth.dt)},
+            {"limit", number(c.truth.limit)},
+            {"lambda_max", c.truth.lambda_max},
+            {"residual", c.truth.residual},
+            {"certified", c.truth.certified},
+            {"seconds", c.truth.seconds},
+            {"products", c.truth.products}}},
+          {"estimates", estimates},
+          {"policy",
+           {{"dt", number(policy.dt)},
+            {"ratio_to_limit", number(policy.dt / c.truth.limit)},
+            {"safe", policy.dt <= c.truth.limit}}}};
+}
+
+void print_policy(const PolicyStep& policy, const Comparison& c) {
+  const double ratio = policy.dt / c.truth.limit;
+  fmt::print("\nStep of this scene ({}): {:.6e} s, {:.4f} of the limit.\n", policy.how, policy.dt, ratio);
+  if (ratio > 1)
+    fmt::print(
+        "WARNING: that is above the limit; the cycle will blow up. Take at most {:.6e} s, or "
+        "timestep: {{policy: bound}}.\n",
+        c.truth.limit);
+}
+
+void print(const std::string& scene, double damping, const Comparison& c, const PolicyStep& policy) {
+  fmt::print("{}: {}, {}, {}\n", scene, counted(c.bodies, "ball", "balls"),
+             counted(c.contacts, "acting contact", "acting contacts"),
+             counted(c.unknowns, "unknown", "unknowns"));
+  if (c.set_aside > 0)
+    fmt::print("set aside: {} without acting contacts\n", counted(c.set_aside, "ball", "balls"));
+  if (c.unknowns == 0 || !std::isfinite(c.truth.dt)) {
+    fmt::print("\nNothing resists a motion here, so no timestep is critical.\n");
+    return;
+  }
+  fmt::print("\n{:<20} {:>14} {:>9}  {:<22} {:>9} {:>9}\n", "critical timestep", "dt [s]", "of true", "",
+             "seconds", "products");
+  fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", "true", c.truth.dt, 1.0,
+             fmt::format("residual {:.1e}", c.truth.residual), c.truth.seconds, c.truth.products);
+  for (const Estimate& e : c.estimates)
+    fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", e.name, e.dt, e.ratio_to_true,
+               !e.safe ? "UNSAFE" : (e.proven ? "safe (proven)" : "safe here"), e.seconds, e.products);
+  fmt::print("{:<20} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit,
+             c.truth.limit / c.truth.dt,
+             damping > 0 ? fmt::format("with local damping {:g}", damping) : "undamped");
+  print_policy(policy, c);
+}
+
+}  // namespace
+
+void timestep(const Options& options) {
+  if (!options.petsc.empty()) petsc::set_options(options.petsc);
+  const model::Scene scene = io::read_scene(options.scene, options.overrides);
+  const assembly::Model model = assembly::build_model(scene);
+  petsc::start();  // before the clocks of the comparison
+  const Comparison comparison = timestep::compare(model);
+  const PolicyStep policy = policy_step(scene.timestep, comparison);
+  write_json(options.json, to_json(comparison, policy));
+  print(options.scene, model.local_damping, comparison, policy);
+}
+
+}  // namespace eigengrain::app
