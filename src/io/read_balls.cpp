@@ -82,7 +82,7 @@ void read_packing(const Section& section, const BallKind& kind, SceneDraft& draf
   if (!name) return;
   const std::filesystem::path file = (draft.folder / *name).lexically_normal();
   Diagnostics& diagnostics = section.diagnostics();
-  const Packing packing = read_packing_file(file, section.place(), diagnostics);
+  const Packing packing = read_packing_file(file, section.place("file"), diagnostics);
   balls.begin_file(file.string());
   for (std::size_t k = 0; k < packing.radius.size(); ++k)
     balls.add(packing.position[k], packing.radius[k], kind, packing.line[k]);

@@ -242,6 +242,11 @@ const Node* Section::value(std::string_view key, Node::Kind kind) const {
   return nullptr;
 }
 
+Place Section::place(std::string_view key) const {
+  const Node* node = node_->find(key);
+  return node != nullptr ? node->place() : place();
+}
+
 void Section::report(std::string_view key, std::string_view message) const {
   const Node* node = node_->find(key);
   report_at(node != nullptr ? *node : *node_, path_of(key), message);

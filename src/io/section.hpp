@@ -48,6 +48,8 @@ class Section {
 
   const std::string& path() const { return path_; }
   Place place() const { return node_->place(); }
+  /// Of the key, or where the section begins if the key is absent.
+  Place place(std::string_view key) const;
   Diagnostics& diagnostics() const { return *diagnostics_; }
 
  private:

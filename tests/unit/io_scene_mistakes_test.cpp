@@ -244,6 +244,9 @@ TEST(Mistakes, PackingFiles) {
   EXPECT_THAT(reported({.balls = "balls: [{file: paking.txt, material: grain}]"}, folder.path()),
               ElementsAre("scene.yaml:4: there is no file \"" + (folder.path() / "paking.txt").string() +
                           "\"; did you mean \"packing.txt\"?"));
+  // The line is that of the key, not of the entry.
+  EXPECT_THAT(reported({.balls = "balls:\n  - material: grain\n    file: paking.txt"}, folder.path()),
+              ElementsAre(StartsWith("scene.yaml:6: there is no file")));
   EXPECT_THAT(reported({.balls = "balls: [{file: packing.txt, radius: 5, material: grain}]"}, folder.path()),
               Contains(HasSubstr("balls[0].radius: not beside file")));
 }
