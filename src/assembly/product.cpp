@@ -194,8 +194,8 @@ Records<Record> make_records(const Chunk& chunk, Kind kind, const Visits& visits
 }  // namespace
 
 struct StiffnessProduct::Data {
-  Data(const Unknowns& unknowns, std::int32_t bodies, std::vector<double> scaling)
-      : stride(unknowns.rotations() > 0 ? product::rotation_stride : product::translation_stride),
+  Data(const Unknowns& unknowns, std::int32_t bodies, bool turns, std::vector<double> scaling)
+      : stride(turns ? product::rotation_stride : product::translation_stride),
         scale(std::move(scaling)),
         // One body more than there are: the one at rest behind walls.
         x(static_cast<std::size_t>(stride) * (static_cast<std::size_t>(bodies) + 1)),
@@ -230,7 +230,10 @@ std::vector<double> full_scaling(const Unknowns& unknowns, std::span<const doubl
 StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, std::span<const ContactElement> elements,
                                    std::span<const double> scale) {
   const std::int32_t bodies = unknowns.bodies();
-  data_ = std::make_unique<Data>(unknowns, bodies, full_scaling(unknowns, scale));
+  // Contacts with shear read rotations even where every body holds its own.
+  const bool turns = std::any_of(elements.begin(), elements.end(),
+                                 [](const ContactElement& e) { return kind_of(e) != Kind::central; });
+  data_ = std::make_unique<Data>(unknowns, bodies, turns, full_scaling(unknowns, scale));
   EIGENGRAIN_ASSERT(static_cast<std::int64_t>(data_->scale.size()) == unknowns.size(), data_->scale.size(),
                     unknowns.size());
   const Visits visits(unknowns, bodies, elements);

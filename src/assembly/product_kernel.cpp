@@ -111,7 +111,7 @@ inline void apply_records(const Records<Record>& records, std::int32_t first, st
 void EIGENGRAIN_KERNEL(const Chunk& chunk, int stride, const double* x, double* y) {
   const std::int32_t bodies = chunk.last - chunk.first;
   if (stride == translation_stride) {
-    apply_records<false>(chunk.central, chunk.first, bodies, x, y);
+    if (!chunk.central.rows.inner.empty()) apply_records<false>(chunk.central, chunk.first, bodies, x, y);
     return;
   }
   if (!chunk.central.rows.inner.empty()) apply_records<true>(chunk.central, chunk.first, bodies, x, y);

@@ -1,0 +1,133 @@
+#pragma once
+
+#include "eigengrain/assembly/eigen_matrix.hpp"
+#include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/stiffness.hpp"
+#include "eigengrain/assembly/unknowns.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+/// Scenes of a few bodies for tests, built in code. Masses are given, not computed from a density, so that
+/// closed forms can be written with m = 1.
+namespace eigengrain::test {
+
+struct Springs {
+  double kn = 1;
+  double ks = 0;
+  bool tension = true;  ///< linear springs; without it, friction is set so that ks counts
+};
+
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(const Springs& springs = {}) {
+    scene_.name = "test";
+    scene_.materials.push_back({"grain", 1.0});
+    scene_.contacts.push_back({.law = "linear",
+                               .parameters = {springs.kn, springs.ks, springs.ks > 0 ? 0.5 : 0.0,
+                                              springs.tension ? 1.0 : 0.0, 0.0}});
+    scene_.local_damping = 0;
+  }
+
+  SceneBuilder& ball(const Vec3& position, double radius = 1, double mass = 1,
+                     model::FixedComponents fixed = {}) {
+    model::Bodies& b = scene_.bodies;
+    b.identity.push_back(b.size());
+    b.position.push_back(position);
+    b.radius.push_back(radius);
+    b.mass.push_back(mass);
+    b.inertia.push_back(model::sphere_inertia(radius, mass));
+    b.material.push_back(0);
+    b.fixed.push_back(fixed);
+    return *this;
+  }
+  SceneBuilder& plane(const Vec3& point, const Vec3& normal) {
+    scene_.walls.push_back({point, normal.normalized(), 0, "plane"});
+    return *this;
+  }
+  SceneBuilder& periodic(const Vec3& lengths, std::array<bool, 3> axes = {true, true, true}) {
+    scene_.cell = {Vec3::Zero(), lengths, axes};
+    return *this;
+  }
+  /// The same scene turned about the origin. Only without fixed components and periodic axes.
+  SceneBuilder turned(const Mat3& rotation) const {
+    SceneBuilder result = *this;
+    for (Vec3& x : result.scene_.bodies.position) x = rotation * x;
+    for (model::Plane& wall : result.scene_.walls) {
+      wall.point = rotation * wall.point;
+      wall.normal = rotation * wall.normal;
+    }
+    return result;
+  }
+
+  model::Scene& scene() { return scene_; }
+  assembly::Model build() const { return assembly::build_model(scene_); }
+
+ private:
+  model::Scene scene_;
+};
+
+/// A model with its contacts as elements and its unknowns.
+struct System {
+  explicit System(assembly::Model m)
+      : model(std::move(m)), elements(assembly::contact_elements(model)), unknowns(model.bodies, elements) {}
+  explicit System(const SceneBuilder& builder) : System(builder.build()) {}
+
+  /// All eigenvalues of M⁻¹K on the free components, increasing.
+  Eigen::VectorXd spectrum() const {
+    const Eigen::MatrixXd a = assembly::dense_scaled_stiffness(model.bodies, unknowns, elements);
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
+  }
+
+  assembly::Model model;
+  std::vector<contact::ContactElement> elements;
+  assembly::Unknowns unknowns;
+};
+
+constexpr model::FixedComponents fix_rotations{0b111000};
+constexpr model::FixedComponents fix_all{0b111111};
+
+/// A proper rotation, uniform over all orientations.
+inline Mat3 random_rotation(std::mt19937_64& random) {
+  std::normal_distribution<double> gaussian;
+  Eigen::Quaterniond q(gaussian(random), gaussian(random), gaussian(random), gaussian(random));
+  return q.normalized().toRotationMatrix();
+}
+
+inline Vec3 random_vector(std::mt19937_64& random) {
+  std::normal_distribution<double> gaussian;
+  return {gaussian(random), gaussian(random), gaussian(random)};
+}
+
+/// A cluster grown ball by ball: each new ball touches one that is there, with some overlap; others that come
+/// too near are kept as they come. Radii within a factor `spread`, densities equal, a ball fixed (some or all
+/// components) with probability `fixed`.
+inline SceneBuilder random_cluster(std::mt19937_64& random, int balls, const Springs& springs,
+                                   double spread = 2, double fixed = 0) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  SceneBuilder builder(springs);
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (int i = 0; i < balls; ++i) {
+    const double radius = std::pow(spread, uniform(random));
+    Vec3 centre = Vec3::Zero();
+    if (i > 0) {
+      const auto host = static_cast<std::size_t>(uniform(random) * i);
+      const double gap = -0.05 * uniform(random) * std::min(radius, radii[host]);
+      centre = centres[host] + (radii[host] + radius + gap) * random_vector(random).normalized();
+    }
+    model::FixedComponents bits;
+    if (uniform(random) < fixed)
+      bits =
+          uniform(random) < 0.5 ? fix_all : model::FixedComponents(static_cast<std::uint8_t>(random() % 64));
+    builder.ball(centre, radius, radius * radius * radius, bits);
+    centres.push_back(centre);
+    radii.push_back(radius);
+  }
+  return builder;
+}
+
+}  // namespace eigengrain::test
