@@ -59,6 +59,10 @@ double timestep_of(double lambda) {
 
 }  // namespace
 
+double damped_timestep(double undamped_dt, double local_damping) {
+  return undamped_dt / std::sqrt(1.0 + local_damping);
+}
+
 double diagonal_estimate(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
                          std::span<const ContactElement> elements) {
   std::vector<Vec6> stiffness(bodies.position.size(), Vec6::Zero());

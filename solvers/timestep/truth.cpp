@@ -4,6 +4,7 @@
 #include "eigengrain/assembly/product.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/timer.hpp"
+#include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/petsc/session.hpp"
 
 #include "petsc/handles.hpp"
@@ -116,7 +117,7 @@ Truth critical_timestep(const model::Bodies& bodies, const assembly::Unknowns& u
   EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &truth.lambda_max, nullptr, x.get(), nullptr));
   truth.residual = relative_residual(matrix.get(), x.get(), truth.lambda_max);
   truth.dt = 2.0 / std::sqrt(truth.lambda_max);
-  truth.limit = truth.dt / std::sqrt(1.0 + local_damping);
+  truth.limit = cycle::damped_timestep(truth.dt, local_damping);
   truth.products = product.products();
   truth.seconds = watch.seconds();
   return truth;

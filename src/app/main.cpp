@@ -1,12 +1,15 @@
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/io/schema.hpp"
+#include "eigengrain/io/suggest.hpp"
 
 #include "verbs.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <exception>
 #include <new>
 
@@ -33,11 +36,21 @@ CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string
   return verb;
 }
 
+/// A word that is no verb: said plainly, with the verb that was probably meant.
+void require_known_verb(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : program.get_subcommands({})) verbs.push_back(verb->get_name());
+  if (std::find(verbs.begin(), verbs.end(), argv[1]) != verbs.end()) return;
+  throw CLI::ValidationError(fmt::format("there is no verb \"{}\" here{} (verbs: {})", argv[1],
+                                         io::did_you_mean(argv[1], verbs), fmt::join(verbs, ", ")));
+}
+
 int run(int argc, char** argv) {
   CLI::App program("Discrete elements with their true stiffness matrix.", "eigengrain");
   program.set_version_flag("--version", EIGENGRAIN_VERSION);
   program.require_subcommand(1);
-  program.failure_message(CLI::FailureMessage::help);
+  program.failure_message(CLI::FailureMessage::simple);
   Options options;
   add_verb(program, "check", "read a scene, report every mistake, say what the model will consist of",
            options, check);
@@ -50,6 +63,7 @@ int run(int argc, char** argv) {
     fmt::print("{}", io::schema_markdown());
   });
   try {
+    require_known_verb(program, argc, argv);
     program.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& success) {

@@ -24,6 +24,10 @@ std::string counted(std::int64_t number, const std::string& one, const std::stri
   return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
 }
 
+void print_notes(const model::Scene& scene) {
+  for (const std::string& note : scene.notes) fmt::print("note: {}\n", note);
+}
+
 void write_json(const std::string& file, const nlohmann::ordered_json& document) {
   if (file.empty()) return;
   std::ofstream out(file);

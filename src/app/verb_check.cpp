@@ -84,52 +84,80 @@ void print_settings(const model::Scene& scene) {
     fmt::print("  run         until the unbalanced ratio is {:g}\n", *scene.run.unbalanced);
 }
 
+/// All that the verb reports.
+struct Report {
+  explicit Report(const model::Scene& asked)
+      : scene(asked),
+        model(assembly::build_model(asked)),
+        unknowns(model.bodies, assembly::contact_elements(model)),
+        groups(summarise(model.contacts)),
+        absent(left_out(asked, model, unknowns, groups)),
+        free(static_cast<std::int64_t>(unknowns.free_components().size())),
+        set_aside(static_cast<std::int64_t>(unknowns.set_aside().size())) {}
+
+  const model::Scene& scene;
+  assembly::Model model;
+  assembly::Unknowns unknowns;
+  std::vector<GroupSummary> groups;
+  std::vector<std::string> absent;
+  std::int64_t free;  ///< numbers that are free to move
+  std::int64_t set_aside;
+};
+
+ordered_json to_json(const Report& report) {
+  ordered_json groups = ordered_json::array();
+  for (const GroupSummary& g : report.groups)
+    groups.push_back({{"kinematics", g.kinematics},
+                      {"law", g.law},
+                      {"rule", g.rule},
+                      {"contacts", g.contacts},
+                      {"history_bytes", g.history_bytes}});
+  return {{"bodies", report.model.bodies.size()},
+          {"walls", report.model.walls.size()},
+          {"contacts", report.model.contacts.size()},
+          {"unknowns", report.free},
+          {"translations", report.unknowns.blocks() - report.unknowns.rotations()},
+          {"rotations", report.unknowns.rotations()},
+          {"set_aside", report.set_aside},
+          {"groups", groups},
+          {"left_out", report.absent},
+          {"notes", report.scene.notes}};
+}
+
+std::string radii_text(const model::Bodies& bodies) {
+  const auto [least, most] = std::minmax_element(bodies.radius.begin(), bodies.radius.end());
+  return *least == *most ? fmt::format("radius {:g} m", *least)
+                         : fmt::format("radii {:g} to {:g} m", *least, *most);
+}
+
+void print(const Report& report) {
+  fmt::print("{} is in order. The model will consist of\n", report.scene.name);
+  fmt::print("  bodies      {}, {}\n", counted(report.model.bodies.size(), "ball", "balls"),
+             radii_text(report.model.bodies));
+  for (const model::Plane& wall : report.model.walls) fmt::print("  wall        {}\n", wall.name);
+  for (const GroupSummary& g : report.groups)
+    fmt::print(
+        "  contacts    {} {}, {} by {}, {}\n", grouped(g.contacts), g.kinematics, g.law,
+        rule_text(report.scene, g.rule),
+        g.history_bytes == 0 ? "no history" : fmt::format("{} bytes of history each", g.history_bytes));
+  fmt::print("  unknowns    {}: {} of translation, {} of rotation (vectors)\n", grouped(report.free),
+             grouped(report.unknowns.blocks() - report.unknowns.rotations()),
+             grouped(report.unknowns.rotations()));
+  if (report.set_aside > 0)
+    fmt::print("  set aside   {} without acting contacts\n", counted(report.set_aside, "ball", "balls"));
+  print_settings(report.scene);
+  fmt::print("left out, as nothing here needs it: {}\n",
+             report.absent.empty() ? "nothing" : fmt::format("{}", fmt::join(report.absent, ", ")));
+  print_notes(report.scene);
+}
+
 }  // namespace
 
 void check(const Options& options) {
   const model::Scene scene = io::read_scene(options.scene, options.overrides);
-  const assembly::Model model = assembly::build_model(scene);
-  const std::vector<contact::ContactElement> elements = assembly::contact_elements(model);
-  const assembly::Unknowns unknowns(model.bodies, elements);
-  const std::vector<GroupSummary> groups = summarise(model.contacts);
-  const std::vector<std::string> absent = left_out(scene, model, unknowns, groups);
-  const auto free = static_cast<std::int64_t>(unknowns.free_components().size());
-  const auto [least, most] = std::minmax_element(model.bodies.radius.begin(), model.bodies.radius.end());
-
-  ordered_json group_list = ordered_json::array();
-  for (const GroupSummary& g : groups)
-    group_list.push_back({{"kinematics", g.kinematics},
-                          {"law", g.law},
-                          {"rule", g.rule},
-                          {"contacts", g.contacts},
-                          {"history_bytes", g.history_bytes}});
-  write_json(options.json, {{"bodies", model.bodies.size()},
-                            {"walls", model.walls.size()},
-                            {"contacts", model.contacts.size()},
-                            {"unknowns", free},
-                            {"translations", unknowns.blocks() - unknowns.rotations()},
-                            {"rotations", unknowns.rotations()},
-                            {"set_aside", unknowns.set_aside().size()},
-                            {"groups", group_list},
-                            {"left_out", absent}});
-
-  fmt::print("{} is in order. The model will consist of\n", options.scene);
-  fmt::print("  bodies      {}, radii {:g} to {:g} m\n", counted(model.bodies.size(), "ball", "balls"),
-             *least, *most);
-  for (const model::Plane& wall : model.walls) fmt::print("  wall        {}\n", wall.name);
-  for (const GroupSummary& g : groups)
-    fmt::print(
-        "  contacts    {} {}, {} by {}, {}\n", grouped(g.contacts), g.kinematics, g.law,
-        rule_text(scene, g.rule),
-        g.history_bytes == 0 ? "no history" : fmt::format("{} bytes of history each", g.history_bytes));
-  fmt::print("  unknowns    {}: {} of translation, {} of rotation (vectors)\n", grouped(free),
-             grouped(unknowns.blocks() - unknowns.rotations()), grouped(unknowns.rotations()));
-  if (!unknowns.set_aside().empty())
-    fmt::print("  set aside   {} without acting contacts\n",
-               counted(static_cast<std::int64_t>(unknowns.set_aside().size()), "ball", "balls"));
-  print_settings(scene);
-  fmt::print("left out, as nothing here needs it: {}\n",
-             absent.empty() ? "nothing" : fmt::format("{}", fmt::join(absent, ", ")));
+  const Report report(scene);
+  write_json(options.json, to_json(report));
+  print(report);
 }
 
 }  // namespace eigengrain::app

@@ -1,4 +1,5 @@
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/io/scene_reader.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
@@ -24,7 +25,7 @@ struct PolicyStep {
   double dt = 0;
 };
 
-PolicyStep policy_step(const model::TimestepChoice& choice, const Comparison& comparison) {
+PolicyStep policy_step(const model::TimestepChoice& choice, double damping, const Comparison& comparison) {
   const auto of = [&](const char* name) {
     for (const Estimate& estimate : comparison.estimates)
       if (estimate.name == name) return choice.safety * estimate.dt;
@@ -34,7 +35,8 @@ PolicyStep policy_step(const model::TimestepChoice& choice, const Comparison& co
     case model::TimestepPolicy::fixed:
       return {"fixed", choice.dt.value_or(0.0)};
     case model::TimestepPolicy::bound:
-      return {fmt::format("bound: {:g} of scaled-block-bound", choice.safety), of("scaled-block-bound")};
+      return {fmt::format("bound: {:g} of scaled-block-bound with the damping", choice.safety),
+              cycle::damped_timestep(of("scaled-block-bound"), damping)};
     case model::TimestepPolicy::estimate:
       break;
   }
@@ -85,10 +87,11 @@ void print_policy(const PolicyStep& policy, const Comparison& c) {
         c.truth.limit);
 }
 
-void print(const std::string& scene, double damping, const Comparison& c, const PolicyStep& policy) {
-  fmt::print("{}: {}, {}, {}\n", scene, counted(c.bodies, "ball", "balls"),
+void print(const model::Scene& scene, const Comparison& c, const PolicyStep& policy) {
+  fmt::print("{}: {}, {}, {}\n", scene.name, counted(c.bodies, "ball", "balls"),
              counted(c.contacts, "acting contact", "acting contacts"),
              counted(c.unknowns, "unknown", "unknowns"));
+  print_notes(scene);
   if (c.set_aside > 0)
     fmt::print("set aside: {} without acting contacts\n", counted(c.set_aside, "ball", "balls"));
   if (c.unknowns == 0 || !std::isfinite(c.truth.dt)) {
@@ -102,9 +105,9 @@ void print(const std::string& scene, double damping, const Comparison& c, const 
   for (const Estimate& e : c.estimates)
     fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", e.name, e.dt, e.ratio_to_true,
                !e.safe ? "UNSAFE" : (e.proven ? "safe (proven)" : "safe here"), e.seconds, e.products);
-  fmt::print("{:<20} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit,
-             c.truth.limit / c.truth.dt,
-             damping > 0 ? fmt::format("with local damping {:g}", damping) : "undamped");
+  fmt::print(
+      "{:<20} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit, c.truth.limit / c.truth.dt,
+      scene.local_damping > 0 ? fmt::format("with local damping {:g}", scene.local_damping) : "undamped");
   print_policy(policy, c);
 }
 
@@ -116,9 +119,9 @@ void timestep(const Options& options) {
   const assembly::Model model = assembly::build_model(scene);
   petsc::start();  // before the clocks of the comparison
   const Comparison comparison = timestep::compare(model);
-  const PolicyStep policy = policy_step(scene.timestep, comparison);
+  const PolicyStep policy = policy_step(scene.timestep, model.local_damping, comparison);
   write_json(options.json, to_json(comparison, policy));
-  print(options.scene, model.local_damping, comparison, policy);
+  print(scene, comparison, policy);
 }
 
 }  // namespace eigengrain::app

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -105,6 +106,13 @@ void check_walls(const SceneDraft& draft, Diagnostics& diagnostics) {
   }
 }
 
+/// Whether two walls are one plane, up to rounding.
+bool coincide(const model::Plane& first, const model::Plane& second) {
+  const double distance = std::abs(height_above(first, second.point));
+  const double size = 1e-12 * (first.point.norm() + second.point.norm());
+  return first.normal.dot(second.normal) > 1 - 1e-12 && distance <= size;
+}
+
 std::string text_of(const Place& place) {
   return place.line > 0 ? fmt::format("{}:{}", place.file, place.line) : place.file;
 }
@@ -123,6 +131,16 @@ void check_coincidence(const SceneDraft& draft, Diagnostics& diagnostics) {
 }
 
 }  // namespace
+
+void add_notes(SceneDraft& draft) {
+  model::Scene& scene = draft.scene;
+  for (std::size_t second = 1; second < scene.walls.size(); ++second)
+    for (std::size_t first = 0; first < second; ++first)
+      if (coincide(scene.walls[first], scene.walls[second]))
+        scene.notes.push_back(
+            fmt::format("{} and {} lie in one plane: balls there touch both, so they count twice",
+                        scene.walls[first].name, scene.walls[second].name));
+}
 
 void check_scene(const Section& root, const SceneDraft& draft) {
   check_densities(draft, root.diagnostics());

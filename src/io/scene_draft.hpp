@@ -53,4 +53,7 @@ std::int32_t read_material(const Section& section, std::string_view key, const m
 /// balls at one place.
 void check_scene(const Section& root, const SceneDraft& draft);
 
+/// Adds to the scene's notes what is odd, though it is no mistake: walls that coincide.
+void add_notes(SceneDraft& draft);
+
 }  // namespace eigengrain::io

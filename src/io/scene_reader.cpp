@@ -56,6 +56,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   draft.folder = folder;
   read_sections(Section(document.root, "", "", diagnostics), draft);
   diagnostics.throw_if_any();
+  add_notes(draft);
   return std::move(draft.scene);
 }
 

@@ -29,7 +29,7 @@ struct ContactBlocks {
   Mat6 bb;
 };
 
-/// B [6×12]: (δ, φ) = B (u_a, θ_a, u_b, θ_b), theory §6:
+/// B [6×12]: (δ, φ) = B (u_a, θ_a, u_b, θ_b), docs/theory.md:
 ///     B = [ -1  [R_a]×  1  -[R_b]× ]
 ///         [  0    -1    0     1    ]
 Eigen::Matrix<double, 6, 12> strain_displacement(const ContactElement& element);

@@ -13,13 +13,18 @@
 /// infinite.
 namespace eigengrain::cycle {
 
+/// Largest stable step of the cycle with local damping α, from that of the undamped cycle (or a bound of it):
+/// dt/√(1 + α). Exact where all bodies have the same α: in the half-cycle in which it opposes the resultant,
+/// the damping acts like the mass M/(1 + α) (docs/theory.md).
+double damped_timestep(double undamped_dt, double local_damping);
+
 /// The seed's estimate (eq. 1.31): min over bodies and degrees of freedom of √(m/k), k the sum over the
 /// body's contacts of the diagonal terms of their stiffness matrices. Depends on the frame and is NOT a
 /// bound: up to 22% above the true critical step for two spheres, up to √3 in principle. s.
 double diagonal_estimate(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
                          std::span<const contact::ContactElement> elements);
 
-/// A proven lower bound of the true critical step, for any positive weights d of the bodies (theory §9):
+/// A proven lower bound of the true critical step, for any positive weights d of the bodies (docs/theory.md):
 ///
 ///   λ_max <= max_i λ_max(M_i^-½ [Σ_c (1 + d_j/d_i) K_c,ii] M_i^-½),     Δt >= 2/√λ_max
 ///

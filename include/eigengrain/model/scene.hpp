@@ -58,6 +58,7 @@ struct Scene {
   double local_damping = 0.7;   ///< α of the seed's eq. 1.47
   TimestepChoice timestep;
   RunChoice run;
+  std::vector<std::string> notes;  ///< what the reader found odd, though it is no mistake
 
   /// Index into `contacts` of the rule for two materials, or -1.
   std::int32_t rule_for(std::int32_t material_a, std::int32_t material_b) const {

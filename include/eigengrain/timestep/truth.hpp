@@ -30,7 +30,7 @@ struct Truth {
 /// λ_max by Krylov-Schur iteration (SLEPc) on the matrix-free product, from a random Gaussian start vector.
 /// The same to the bit on any number of threads. Throws SolverError when it does not converge.
 ///
-/// local_damping  α of the cycle; with one α for all bodies the limit is dt/√(1 + α) (theory §9)
+/// local_damping  α of the cycle; see cycle::damped_timestep
 Truth critical_timestep(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
                         std::span<const contact::ContactElement> elements, double local_damping = 0.0,
                         const TruthOptions& options = {});
