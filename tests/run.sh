@@ -7,14 +7,16 @@ cmake/dependencies.sh
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 jobs=${JOBS:-$(nproc)}
 
-run() { # run PRESET [ctest options]: configure, build and test one preset
-  local preset=$1
+run() { # run PRESET [targets] [-- ctest options]: configure, build and test one preset
+  local preset=$1 targets=()
   shift
+  while [ "$#" -gt 0 ] && [ "$1" != -- ]; do targets+=(--target "$1") && shift; done
+  [ "${1:-}" = -- ] && shift
   cmake --preset "$preset" >/dev/null
-  cmake --build --preset "$preset" -j "$jobs"
+  cmake --build --preset "$preset" -j "$jobs" "${targets[@]}"
   ctest --preset "$preset" -j "$jobs" "$@"
 }
 
 run release
-run dev -L '^(unit|laws)$'
+run dev test_unit test_laws -- -L '^(unit|laws)$'
 run minimal

@@ -88,6 +88,7 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace eigengrain::app
 
+// NOLINTNEXTLINE(bugprone-exception-escape): only where a message of a failure cannot be printed either
 int main(int argc, char** argv) {
   return eigengrain::app::run(argc, argv);
 }

@@ -19,7 +19,7 @@ std::vector<double> inverse_sqrt_mass(const model::Bodies& bodies, const Unknown
   std::vector<double> scale = mass_diagonal(bodies, unknowns);
   for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
     for (int k = 0; k < Unknowns::block_size; ++k) {
-      double& s = scale[static_cast<std::size_t>(Unknowns::block_size * block + k)];
+      double& s = scale[Unknowns::block_size * static_cast<std::size_t>(block) + static_cast<std::size_t>(k)];
       s = ((unknowns.mask(block) >> k) & 1) != 0 ? 0.0 : 1.0 / std::sqrt(s);
     }
   return scale;

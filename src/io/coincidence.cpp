@@ -56,7 +56,7 @@ std::vector<std::pair<std::int32_t, std::int32_t>> coincident_balls(std::span<co
       const auto b = static_cast<std::size_t>(swept[j].ball);
       if ((swept[j].centre - swept[i].centre).norm() > same_place * (radii[a] + radii[b])) continue;
       paired[j] = true;
-      pairs.push_back(std::minmax(swept[i].ball, swept[j].ball));
+      pairs.emplace_back(std::minmax(swept[i].ball, swept[j].ball));
     }
   }
   std::sort(pairs.begin(), pairs.end());

@@ -66,8 +66,8 @@ void PairSearcher::add_hits(std::span<const CellGrid::Entry> entries, const Vec3
   Hit* next = hits_.data() + hit_count_;
   for (const CellGrid::Entry& entry : entries) {
     *next = {entry.body, image};
-    const bool near = (entry.centre - centre).squaredNorm() <= squared_range;
-    next += static_cast<std::ptrdiff_t>(near & (entry.body >= least_partner));
+    const auto near = static_cast<std::ptrdiff_t>((entry.centre - centre).squaredNorm() <= squared_range);
+    next += near & static_cast<std::ptrdiff_t>(entry.body >= least_partner);
   }
   hit_count_ = static_cast<std::size_t>(next - hits_.data());
 }

@@ -6,6 +6,7 @@
 #include "eigengrain/assembly/unknowns.hpp"
 
 #include <Eigen/Eigenvalues>
+
 #include <cmath>
 #include <cstdint>
 #include <random>
