@@ -1,0 +1,78 @@
+// The true critical timestep and its estimates, in seconds and in units of matrix-free products.
+#include "eigengrain/assembly/mass.hpp"
+#include "eigengrain/assembly/product.hpp"
+#include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/timestep/truth.hpp"
+
+#include "bench/measure.hpp"
+#include "bench/packings.hpp"
+
+#include <benchmark/benchmark.h>
+
+namespace eigengrain::bench {
+namespace {
+
+/// One product of the eigensolver, ready to be called again and again.
+class OneProduct {
+ public:
+  explicit OneProduct(const Packing& p)
+      : product_(p.unknowns, p.elements, assembly::inverse_sqrt_mass(p.model.bodies, p.unknowns)),
+        x_(random_numbers(product_.size())),
+        y_(x_.size()) {}
+  void operator()() { product_.apply(x_, y_); }
+
+ private:
+  assembly::StiffnessProduct product_;
+  std::vector<double> x_;
+  std::vector<double> y_;
+};
+
+/// `call` by turns with products, on as many threads as the benchmark asks for.
+template <class Call>
+void in_products(benchmark::State& state, const Packing& p, const Call& call) {
+  const Threads threads(state.range(1));
+  OneProduct product(p);
+  SideBySide times;
+  for ([[maybe_unused]] auto _ : state) {
+    const double unit = seconds_a_call(threads, [&] { product(); });
+    const double seconds = threads.seconds(call);
+    times.add(unit, seconds);
+    state.SetIterationTime(seconds);
+  }
+  state.counters["in_products"] = times.second_over_first();
+}
+
+void critical_timestep(benchmark::State& state) {
+  const Packing& p = packing(state.range(0));
+  timestep::Truth truth;
+  in_products(state, p, [&] { truth = timestep::critical_timestep(p.model.bodies, p.unknowns, p.elements); });
+  state.counters["products"] = static_cast<double>(truth.products);
+  state.counters["residual"] = truth.residual;
+}
+BENCHMARK(critical_timestep)->Apply(sizes_and_threads)->Iterations(3);
+
+void diagonal_estimate(benchmark::State& state) {
+  const Packing& p = packing(state.range(0));
+  in_products(state, p, [&] {
+    benchmark::DoNotOptimize(cycle::diagonal_estimate(p.model.bodies, p.unknowns, p.elements));
+  });
+}
+BENCHMARK(diagonal_estimate)->Apply(sizes_and_threads)->Iterations(5);
+
+void block_bound(benchmark::State& state) {
+  const Packing& p = packing(state.range(0));
+  in_products(state, p,
+              [&] { benchmark::DoNotOptimize(cycle::block_bound(p.model.bodies, p.unknowns, p.elements)); });
+}
+BENCHMARK(block_bound)->Apply(sizes_and_threads)->Iterations(5);
+
+void scaled_block_bound(benchmark::State& state) {
+  const Packing& p = packing(state.range(0));
+  in_products(state, p, [&] {
+    benchmark::DoNotOptimize(cycle::scaled_block_bound(p.model.bodies, p.unknowns, p.elements, 3));
+  });
+}
+BENCHMARK(scaled_block_bound)->Apply(sizes_and_threads)->Iterations(5);
+
+}  // namespace
+}  // namespace eigengrain::bench
