@@ -1,0 +1,144 @@
+"""The command line as a user meets it: exit codes, messages, JSON. Usage: cli_test.py PROGRAM EXAMPLES"""
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+HAS_TIMESTEP = "timestep" in subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout
+
+# Two equal frictionless spheres along (1, 1, 1), R = 5 mm, that just overlap.
+PAIR = """
+materials: [{name: glass, density: 2500}]
+contacts: [{between: [glass, glass], law: linear, kn: 1e5}]
+balls:
+  - {position: [0, 0, 0], radius: 5 mm, material: glass}
+  - {position: [5.7735 mm, 5.7735 mm, 5.7735 mm], radius: 5 mm, material: glass}
+"""
+WRONG = """
+gravty: [0, 0, -9.81]
+materials: [{name: glass, density: 2500 kg}]
+contacts: [{between: [glas, glass], law: linear, kn: 1e5}]
+balls:
+  - {position: [0, 0, 0], radius: -5 mm, material: glass}
+"""
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self._folder.name)
+
+    def tearDown(self):
+        self._folder.cleanup()
+
+    def scene(self, text):
+        file = self.folder / "scene.yaml"
+        file.write_text(text)
+        return file
+
+    def run_program(self, *arguments):
+        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
+
+    def succeed(self, *arguments):
+        """What the program prints and its JSON; it must succeed."""
+        result = self.folder / "result.json"
+        done = self.run_program(*arguments, "--json", result)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout, json.loads(result.read_text())
+
+    def test_check_says_what_the_model_consists_of(self):
+        text, report = self.succeed("check", EXAMPLES / "scenes" / "packing_10k.yaml")
+        self.assertIn("25,781 ball-ball, linear", text)
+        self.assertIn("left out, as nothing here needs it: periodic images", text)
+        self.assertEqual(report["contacts"], 27440)
+        self.assertEqual(report["unknowns"], 60000)
+
+    def test_check_leaves_out_what_nothing_needs(self):
+        _, report = self.succeed("check", self.scene(PAIR))
+        self.assertEqual(report["rotations"], 0)
+        self.assertEqual(report["groups"][0]["history_bytes"], 0)
+        self.assertTrue(any("rotations" in part for part in report["left_out"]))
+
+    def test_check_notes_walls_that_coincide(self):
+        wall = "  - {plane: {point: [0, 0, -1], normal: [0, 0, 1]}, material: glass}\n"
+        text, report = self.succeed("check", self.scene(PAIR + "walls:\n" + wall + wall))
+        self.assertIn("note: wall 1 (plane) and wall 2 (plane) lie in one plane", text)
+        self.assertEqual(len(report["notes"]), 1)
+
+    def test_every_mistake_is_reported_at_once(self):
+        done = self.run_program("check", self.scene(WRONG))
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stdout, "")
+        for line, what in ((2, 'did you mean "gravity"'), (3, "is a mass"), (4, 'did you mean "glass"'),
+                           (6, "out of range")):
+            self.assertRegex(done.stderr, rf"scene\.yaml:{line}: .*{what}")
+
+    def test_overrides_act_and_are_named_when_wrong(self):
+        _, report = self.succeed("check", self.scene(PAIR), "--set", "contacts.0.ks=1e4",
+                                 "--set", "contacts.0.friction=0.5")
+        self.assertEqual(report["rotations"], 2)
+        done = self.run_program("check", self.scene(PAIR), "--set", "contacts.0.kn=soft")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--set contacts.0.kn=soft", done.stderr)
+
+    def test_wrong_command_lines(self):
+        done = self.run_program("tmestep", "x.yaml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('no verb "tmestep"', done.stderr)
+        self.assertEqual(self.run_program().returncode, 2)
+        self.assertEqual(self.run_program("check").returncode, 2)
+        missing = self.run_program("check", self.folder / "nothing.yaml")
+        self.assertEqual(missing.returncode, 1)
+        self.assertIn("nothing.yaml", missing.stderr)
+
+    def test_json_that_cannot_be_written_is_an_error(self):
+        done = self.run_program("check", self.scene(PAIR), "--json", self.folder / "no" / "folder.json")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("cannot write", done.stderr)
+
+    def test_help_and_version_succeed(self):
+        for arguments in (["--help"], ["--version"], ["check", "--help"], ["schema"]):
+            self.assertEqual(self.run_program(*arguments).returncode, 0, arguments)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_timestep_tells_the_unsafe_estimate_of_the_oblique_pair(self):
+        text, report = self.succeed("timestep", self.scene(PAIR))
+        mass = 4 / 3 * math.pi * 5e-3 ** 3 * 2500
+        self.assertAlmostEqual(report["true"]["dt"] / (2 * math.sqrt(mass / 2e5)), 1, delta=1e-10)
+        self.assertAlmostEqual(report["true"]["limit"] / report["true"]["dt"], 1 / math.sqrt(1.7), delta=1e-12)
+        self.assertLess(report["true"]["residual"], 1e-8)
+        self.assertFalse(report["true"]["certified"])
+        by_name = {estimate["name"]: estimate for estimate in report["estimates"]}
+        self.assertAlmostEqual(by_name["diagonal"]["ratio_to_true"], math.sqrt(1.5), delta=1e-9)
+        self.assertFalse(by_name["diagonal"]["safe"])
+        self.assertTrue(by_name["block-bound"]["safe"] and by_name["block-bound"]["proven"])
+        self.assertFalse(report["policy"]["safe"])
+        self.assertIn("UNSAFE", text)
+        self.assertIn("WARNING", text)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_policy_bound_obeys_the_damped_limit(self):
+        _, report = self.succeed("timestep", self.scene(PAIR), "--set", "timestep.policy=bound")
+        self.assertAlmostEqual(report["policy"]["ratio_to_limit"], 0.8, delta=1e-9)
+        self.assertTrue(report["policy"]["safe"])
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_no_contact_means_no_limit(self):
+        text, report = self.succeed("timestep", self.scene(PAIR), "--set", "balls.1.position=[1, 1, 1]")
+        self.assertIn("no timestep is critical", text)
+        self.assertIsNone(report["true"]["dt"])
+        self.assertEqual(report["set_aside"], 2)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_petsc_options_reach_the_eigensolver(self):
+        done = self.run_program("timestep", self.scene(PAIR), "--petsc", "-eps_type no_such_solver")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no_such_solver", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
