@@ -61,6 +61,19 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
   return parts;
 }
 
+/// What one step of the explicit cycle has to do in this scene, in its order.
+std::vector<std::string> passes(const model::Scene& scene, const assembly::Unknowns& unknowns,
+                                const std::vector<GroupSummary>& groups) {
+  std::vector<std::string> parts;
+  if (!groups.empty()) parts.emplace_back("search");
+  for (const GroupSummary& g : groups) parts.push_back(fmt::format("{} {} forces", g.kinematics, g.law));
+  if (!scene.gravity.isZero(0)) parts.emplace_back("gravity");
+  if (scene.local_damping > 0) parts.emplace_back("local damping");
+  parts.emplace_back("translation");
+  if (unknowns.rotations() > 0) parts.emplace_back("rotation");
+  return parts;
+}
+
 const char* policy_name(model::TimestepPolicy policy) {
   switch (policy) {
     case model::TimestepPolicy::fixed:
@@ -91,6 +104,7 @@ struct Report {
         model(assembly::build_model(asked)),
         unknowns(model.bodies, assembly::contact_elements(model)),
         groups(summarise(model.contacts)),
+        steps(passes(asked, unknowns, groups)),
         absent(left_out(asked, model, unknowns, groups)),
         free(static_cast<std::int64_t>(unknowns.free_components().size())),
         set_aside(static_cast<std::int64_t>(unknowns.set_aside().size())) {}
@@ -99,6 +113,7 @@ struct Report {
   assembly::Model model;
   assembly::Unknowns unknowns;
   std::vector<GroupSummary> groups;
+  std::vector<std::string> steps;
   std::vector<std::string> absent;
   std::int64_t free;  ///< numbers that are free to move
   std::int64_t set_aside;
@@ -120,6 +135,7 @@ ordered_json to_json(const Report& report) {
           {"rotations", report.unknowns.rotations()},
           {"set_aside", report.set_aside},
           {"groups", groups},
+          {"passes", report.steps},
           {"left_out", report.absent},
           {"notes", report.scene.notes}};
 }
@@ -145,6 +161,7 @@ void print(const Report& report) {
              grouped(report.unknowns.rotations()));
   if (report.set_aside > 0)
     fmt::print("  set aside   {} without acting contacts\n", counted(report.set_aside, "ball", "balls"));
+  fmt::print("  passes      {}\n", fmt::join(report.steps, ", "));
   print_settings(report.scene);
   fmt::print("left out, as nothing here needs it: {}\n",
              report.absent.empty() ? "nothing" : fmt::format("{}", fmt::join(report.absent, ", ")));

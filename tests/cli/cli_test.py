@@ -56,6 +56,8 @@ class CommandLine(unittest.TestCase):
         self.assertIn("left out, as nothing here needs it: periodic images", text)
         self.assertEqual(report["contacts"], 27440)
         self.assertEqual(report["unknowns"], 60000)
+        self.assertEqual(report["passes"], ["search", "ball-ball linear forces", "ball-wall linear forces", "gravity",
+                                            "local damping", "translation", "rotation"])
 
     def test_check_leaves_out_what_nothing_needs(self):
         _, report = self.succeed("check", self.scene(PAIR))

@@ -1,3 +1,4 @@
+#include "eigengrain/assembly/block_diagonal.hpp"
 #include "eigengrain/assembly/eigen_matrix.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/mass.hpp"
@@ -213,6 +214,26 @@ TEST(StiffnessProduct, IsTheSameToTheBitOnAnyNumberOfThreads) {
   const Eigen::VectorXd one = product_with(1);
   EXPECT_EQ(one, product_with(2));
   EXPECT_EQ(one, product_with(5));
+}
+
+TEST(BlockDiagonal, HoldsTheDiagonalBlocksOfTheMatrix) {
+  std::mt19937_64 random(16);
+  // Free bodies only, so that every body has its u and θ; and a cell in which bodies touch themselves.
+  const std::array scenes{
+      test::random_cluster(random, 20, {.kn = 1, .ks = 0.5}),
+      SceneBuilder({.kn = 2, .ks = 1}).ball({0.1, 0.2, 0.3}).ball({1.1, 0.7, 1.4}).periodic({1.9, 1.8, 2.2})};
+  for (const SceneBuilder& scene : scenes) {
+    const System s(scene);
+    BlockDiagonal diagonal(s.model.bodies.size());
+    assemble_stiffness(s.model, diagonal);
+    const Eigen::MatrixXd k = stiffness_matrix(s.unknowns, s.elements);
+    for (std::int32_t body = 0; body < s.model.bodies.size(); ++body) {
+      ASSERT_EQ(s.unknowns.rotation(body), s.unknowns.translation(body) + 1);
+      const int first = 3 * s.unknowns.translation(body);
+      const Mat6& block = diagonal.blocks()[static_cast<std::size_t>(body)];
+      EXPECT_LT((block - k.block<6, 6>(first, first)).cwiseAbs().maxCoeff(), 1e-13);
+    }
+  }
 }
 
 TEST(Mass, IsOnTheDiagonalAndMaskedNumbersDropOutOfItsRoot) {

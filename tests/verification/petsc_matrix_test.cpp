@@ -2,6 +2,7 @@
 #include "eigengrain/petsc/session.hpp"
 
 #include "petsc/error.hpp"
+#include "petsc/mass_matrix.hpp"
 #include "petsc/stiffness_matrix.hpp"
 #include "support/scenes.hpp"
 
@@ -71,6 +72,25 @@ TEST(PetscStiffnessMatrix, IsAssembledAgainWithoutAllocation) {
   EXPECT_EQ(after.nz_allocated, before.nz_allocated);
   EXPECT_EQ(after.nz_unneeded, 0);  // the pattern holds what is needed and nothing else
   EXPECT_LT(difference(matrix, s, random), 1e-14);
+}
+
+TEST(PetscMassMatrix, MakesTheGeneralisedProblemOfTheDefinition) {
+  // K x = λ M x by a dense solver on the assembled matrices, against the scaled symmetric form.
+  std::mt19937_64 random(44);
+  const System s(random_cluster(random, 12, {.kn = 1, .ks = 0.4}));
+  petsc::StiffnessMatrix stiffness(s.unknowns, s.elements);
+  assemble(stiffness, s);
+  const petsc::Matrix mass = petsc::mass_matrix(s.model.bodies, s.unknowns);
+  petsc::Eigensolver solver;
+  EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
+  EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), stiffness.mat(), mass.get()));
+  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_GHEP));
+  EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSLAPACK));
+  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
+  EIGENGRAIN_PETSC(EPSSolve(solver.get()));
+  double lambda = 0;
+  EIGENGRAIN_PETSC(EPSGetEigenvalue(solver.get(), 0, &lambda, nullptr));
+  EXPECT_NEAR(lambda / s.spectrum().maxCoeff(), 1, 1e-12);
 }
 
 TEST(Petsc, ErrorsBecomeExceptionsWithTheirDescription) {
