@@ -115,6 +115,7 @@ Truth critical_timestep(const model::Bodies& bodies, const assembly::Unknowns& u
                     "ask for less, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
                     options.tolerance, product.products()));
   EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &truth.lambda_max, nullptr, x.get(), nullptr));
+  if (truth.lambda_max <= 0) return truth;  // contacts act, but only along components that are fixed
   truth.residual = relative_residual(matrix.get(), x.get(), truth.lambda_max);
   truth.dt = 2.0 / std::sqrt(truth.lambda_max);
   truth.limit = cycle::damped_timestep(truth.dt, local_damping);

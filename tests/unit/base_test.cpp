@@ -45,5 +45,12 @@ TEST(ForChunks, ChunksDoNotDependOnThreads) {
   EXPECT_EQ(one.back(), std::pair(std::int64_t{9}, std::int64_t{10}));
 }
 
+TEST(ForChunks, HandsOnExceptions) {
+  const auto throwing = [](std::int64_t begin, std::int64_t, std::int64_t) {
+    if (begin == 6) throw InputError("seven");
+  };
+  EXPECT_THROW(for_chunks(10, 3, throwing), InputError);
+}
+
 }  // namespace
 }  // namespace eigengrain

@@ -260,6 +260,15 @@ TEST(Limit, HasTheFactorOfLocalDamping) {
   EXPECT_NEAR(truth.limit / truth.dt, 1 / std::sqrt(1.7), 1e-14);  // 0.76697
 }
 
+TEST(Truth, IsInfiniteWhereContactsActOnFixedComponentsOnly) {
+  const System s(
+      SceneBuilder().ball({0, 0, 0.9}, 1, 1, model::FixedComponents(0b000100)).plane({0, 0, 0}, {0, 0, 1}));
+  ASSERT_EQ(s.elements.size(), 1U);
+  const timestep::Truth truth = critical_timestep(s.model.bodies, s.unknowns, s.elements);
+  EXPECT_TRUE(std::isinf(truth.dt));
+  EXPECT_EQ(truth.residual, 0.0);
+}
+
 TEST(Truth, IsInfiniteWhereNothingTouches) {
   const System s(SceneBuilder().ball({0, 0, 0}).ball({5, 0, 0}));
   EXPECT_TRUE(std::isinf(critical_timestep(s.model.bodies, s.unknowns, s.elements).dt));
