@@ -17,8 +17,12 @@ say "$program" timestep examples/scenes/packing_100k.yaml
 cat <<END
 
 That was the estimated and the true critical timestep of 10,000 and 100,000 balls. From here, in $PWD:
-  $program timestep --help                what else it takes, e.g. --json FILE, --set contacts.0.kn=2e5
-  examples/scenes/packing_10k.yaml            the scene, to copy and change; docs/scene-schema.md has every key
-  $program check MY_SCENE.yaml            reports every mistake of a scene at once
-  tests/run.sh                                builds and runs every test
+  $program timestep --help
+      what else it takes, e.g. --json FILE, --set contacts.0.kn=2e5
+  examples/scenes/packing_10k.yaml
+      the scene, to copy and change; docs/scene-schema.md has every key
+  $program check MY_SCENE.yaml
+      reports every mistake of a scene at once
+  tests/run.sh
+      builds and runs every test
 END

@@ -25,6 +25,7 @@ mirror=${MIRROR:-$(awk -v release="$release" '$3 == release {print $2; exit}' <<
 [ -n "$mirror" ] || { echo "apt knows no archive of $release here: MIRROR=URL $0" >&2; exit 2; }
 
 root=$(mktemp -d "${TMPDIR:-/tmp}/bare-system.XXXXXX")
+chmod 755 "$root"  # apt downloads as a user of its own
 mounted=()
 clean_up() {
   for ((i = ${#mounted[@]} - 1; i >= 0; i--)); do umount "${mounted[i]}" || umount -l "${mounted[i]}" || true; done
@@ -56,6 +57,7 @@ mount_in proc /proc
 mount_in sysfs /sys
 [ -c "$root/dev/null" ] || { echo "debootstrap made no devices: is $root on a file system mounted nodev?" >&2; exit 1; }
 mount_in tmpfs /dev/shm
+mount_in devpts /dev/pts
 
 git clone --quiet --no-hardlinks "$source" "$root/root/eigengrain"
 for command in "${commands[@]}"; do
