@@ -5,6 +5,8 @@ cd "$(dirname "$0")/.."
 cmake/dependencies.sh
 # Everything stays on this machine: no network between MPI processes, and root may start them.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+# Tests run beside each other: threads that wait for the others of their program must not hold the cores meanwhile.
+export OMP_WAIT_POLICY=passive
 jobs=${JOBS:-$(nproc)}
 
 run() { # run PRESET [targets] [-- ctest options]: configure, build and test one preset
