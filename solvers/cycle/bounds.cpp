@@ -53,6 +53,13 @@ Mat6 self_block(const ContactElement& element) {
   return block;
 }
 
+/// mean + √5 deviation of the six eigenvalues, from trace and norm: no eigenvalue is larger (Wolkowicz and
+/// Styan, Linear Algebra Appl. 29:471, 1980).
+double eigenvalue_bound(const Mat6& s) {
+  const double mean = s.trace() / 6;
+  return mean + std::sqrt(5 * std::max(0.0, s.squaredNorm() / 6 - mean * mean));
+}
+
 double timestep_of(double lambda) {
   return lambda > 0 ? 2.0 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();
 }
@@ -138,8 +145,19 @@ std::vector<double> BlockBound::block_eigenvalues() const {
 }
 
 double BlockBound::timestep() const {
-  const std::vector<double> lambda = block_eigenvalues();
-  const double largest = lambda.empty() ? 0.0 : *std::max_element(lambda.begin(), lambda.end());
+  constexpr std::int64_t chunk_size = 1024;
+  const auto bodies = static_cast<std::int64_t>(weight_.size());
+  std::vector<double> largest_of_chunk(static_cast<std::size_t>((bodies + chunk_size - 1) / chunk_size), 0.0);
+  for_chunks(bodies, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+    double& largest = largest_of_chunk[static_cast<std::size_t>(chunk)];
+    for (std::int64_t body = begin; body < end; ++body) {
+      const Mat6 s = block(static_cast<std::int32_t>(body));
+      // Few bodies can hold the largest eigenvalue; the others need none.
+      if (eigenvalue_bound(s) > largest) largest = std::max(largest, largest_eigenvalue(s));
+    }
+  });
+  const double largest =
+      largest_of_chunk.empty() ? 0.0 : *std::max_element(largest_of_chunk.begin(), largest_of_chunk.end());
   return timestep_of(largest * (1.0 + rounding));
 }
 
