@@ -8,17 +8,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <new>
+#include <utility>
 
 namespace eigengrain::assembly {
 namespace product {
 
-void kernel_baseline(const Chunk& chunk, int stride, const double* x, double* y);
+extern const Kernel kernel_baseline;
 #ifdef EIGENGRAIN_KERNEL_AVX2
-void kernel_avx2(const Chunk& chunk, int stride, const double* x, double* y);
+extern const Kernel kernel_avx2;
 #endif
 
-Kernel best_kernel() {
+const Kernel& best_kernel() {
 #ifdef EIGENGRAIN_KERNEL_AVX2
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kernel_avx2;
 #endif
@@ -36,7 +38,6 @@ using product::CentralRecord;
 using product::Chunk;
 using product::GeneralRecord;
 using product::Records;
-using product::Rows;
 
 /// Doubles on cache-line boundaries.
 class PaddedVector {
@@ -82,25 +83,23 @@ void copy(const Vec3& from, double* to) {
   std::copy_n(from.data(), 3, to);
 }
 
-CentralRecord record(const ContactElement& e, std::int32_t other, TypeTag<CentralRecord>) {
+CentralRecord record(const ContactElement& e, TypeTag<CentralRecord>) {
   CentralRecord r{};
   copy(std::sqrt(e.stiffness.normal) * e.normal, r.scaled_normal);
-  r.other = other;
   return r;
 }
 
-BallRecord record(const ContactElement& e, std::int32_t other, TypeTag<BallRecord>) {
+BallRecord record(const ContactElement& e, TypeTag<BallRecord>) {
   BallRecord r{};
   copy(e.normal, r.normal);
   r.shear = e.stiffness.shear;
   r.normal_excess = e.stiffness.normal - e.stiffness.shear;
   r.near = e.lever_a.dot(e.normal);
   r.far = -e.lever_b.dot(e.normal);
-  r.other = other;
   return r;
 }
 
-GeneralRecord record(const ContactElement& e, std::int32_t other, TypeTag<GeneralRecord>) {
+GeneralRecord record(const ContactElement& e, TypeTag<GeneralRecord>) {
   GeneralRecord r{};
   copy(e.normal, r.normal);
   copy(e.lever_a, r.lever_near);
@@ -109,11 +108,20 @@ GeneralRecord record(const ContactElement& e, std::int32_t other, TypeTag<Genera
   r.normal_excess = e.stiffness.normal - e.stiffness.shear;
   r.bending = e.stiffness.bending;
   r.twist_excess = e.stiffness.twist - e.stiffness.bending;
-  r.other = other;
   return r;
 }
 
-/// Bodies a chunk: some tens of chunks for threads to share, few contacts between them.
+/// Kinds of all elements: each is asked for several times, and takes a root.
+std::vector<Kind> kinds_of(std::span<const ContactElement> elements) {
+  std::vector<Kind> kinds(elements.size());
+  for_each_index(std::ssize(elements), [&](std::int64_t c) {
+    kinds[static_cast<std::size_t>(c)] = kind_of(elements[static_cast<std::size_t>(c)]);
+  });
+  return kinds;
+}
+
+/// Bodies a chunk: some tens of chunks for threads to share, few contacts between them, and sums that stay in
+/// a processor's own cache.
 std::int32_t chunk_size(std::int32_t bodies) {
   return std::clamp(bodies / 16, 512, 8192);
 }
@@ -168,55 +176,41 @@ class Visits {
   std::vector<Visit> visits_;
 };
 
+/// Fills the lists of one kind of record. `nobody` stands for the far end at a wall.
 template <class Record>
 Records<Record> make_records(const Chunk& chunk, Kind kind, const Visits& visits,
-                             std::span<const ContactElement> elements, std::int32_t nobody) {
+                             std::span<const ContactElement> elements, std::span<const Kind> kinds,
+                             std::int32_t nobody) {
+  const auto each_visit = [&](const auto& act) {
+    for (std::int32_t body = chunk.first_body; body < chunk.last_body; ++body)
+      for (const Visit& visit : visits.of(body))
+        if (kinds[static_cast<std::size_t>(visit.element)] == kind) act(visit);
+  };
+  std::size_t inner = 0;
+  std::size_t cut = 0;
+  each_visit([&](const Visit& visit) { ++(visit.inner ? inner : cut); });
   Records<Record> result;
-  Rows& rows = result.rows;
-  rows.inner.push_back(0);
-  rows.cut.push_back(0);
-  for (std::int32_t body = chunk.first; body < chunk.last; ++body) {
-    for (const Visit& visit : visits.of(body)) {
-      const ContactElement& e = elements[static_cast<std::size_t>(visit.element)];
-      if (kind_of(e) != kind) continue;
-      const ContactElement seen = visit.swapped ? turned(e) : e;
-      const std::int32_t other = seen.b == no_body ? nobody : seen.b;
-      (visit.inner ? result.inner : result.cut).push_back(record(seen, other, TypeTag<Record>{}));
-    }
-    rows.inner.push_back(static_cast<std::int64_t>(result.inner.size()));
-    rows.cut.push_back(static_cast<std::int64_t>(result.cut.size()));
-  }
-  // A kind that the chunk has none of costs nothing, not even its row offsets.
-  if (result.inner.empty() && result.cut.empty()) rows = {};
+  result.inner.reserve(inner);
+  result.cut.reserve(cut);
+  each_visit([&](const Visit& visit) {
+    const ContactElement& e = elements[static_cast<std::size_t>(visit.element)];
+    Record r = visit.swapped ? record(turned(e), TypeTag<Record>{}) : record(e, TypeTag<Record>{});
+    r.near_body = visit.swapped ? e.b : e.a;
+    r.far_body = visit.swapped ? e.a : e.b;
+    if (r.far_body == no_body) r.far_body = nobody;
+    (visit.inner ? result.inner : result.cut).push_back(r);
+  });
   return result;
 }
 
-}  // namespace
-
-struct StiffnessProduct::Data {
-  Data(const Unknowns& unknowns, std::int32_t bodies, bool turns, std::vector<double> scaling)
-      : stride(turns ? product::rotation_stride : product::translation_stride),
-        scale(std::move(scaling)),
-        // One body more than there are: the one at rest behind walls.
-        x(static_cast<std::size_t>(stride) * (static_cast<std::size_t>(bodies) + 1)),
-        y(x.size()) {
-    slot.reserve(static_cast<std::size_t>(unknowns.blocks()));
-    for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
-      slot.push_back(std::int64_t{stride} * unknowns.body(block) + (unknowns.is_rotation(block) ? 4 : 0));
-  }
-
-  int stride;
-  std::vector<double> scale;
-  std::vector<std::int64_t> slot;  ///< [blocks] where the block stands in the padded vectors
-  PaddedVector x;
-  PaddedVector y;
-  std::vector<Chunk> chunks;
-  product::Kernel kernel = product::best_kernel();
-  std::int64_t record_bytes = 0;
-  std::int64_t products = 0;
-};
-
-namespace {
+/// A thread's sums of the chunk that it works on. They live as long as the thread, so that a product
+/// allocates nothing and its sums stay in the processor's cache from one chunk to the next.
+double* zeroed_sums(std::size_t size) {
+  thread_local PaddedVector sums(64);
+  if (sums.size() < size) sums = PaddedVector(size);
+  std::fill_n(sums.data(), size, 0.0);
+  return sums.data();
+}
 
 std::vector<double> full_scaling(const Unknowns& unknowns, std::span<const double> scale) {
   if (!scale.empty()) return {scale.begin(), scale.end()};
@@ -225,37 +219,80 @@ std::vector<double> full_scaling(const Unknowns& unknowns, std::span<const doubl
   return ones;
 }
 
+product::Layout layout_of(const Unknowns& unknowns, bool turns, std::span<const double> scale) {
+  product::Layout layout{.stride = turns ? product::rotation_stride : product::translation_stride,
+                         .slot = {},
+                         .scale = full_scaling(unknowns, scale)};
+  layout.slot.reserve(static_cast<std::size_t>(unknowns.blocks()));
+  for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
+    layout.slot.push_back(layout.stride / 4 * unknowns.body(block) + (unknowns.is_rotation(block) ? 1 : 0));
+  return layout;
+}
+
+/// Chunks with their bodies and blocks, still without records. Blocks are in the order of their bodies.
+std::vector<Chunk> empty_chunks(const Unknowns& unknowns) {
+  std::vector<Chunk> chunks;
+  const std::int32_t size = chunk_size(unknowns.bodies());
+  std::int32_t block = 0;
+  for (std::int32_t first = 0; first < unknowns.bodies(); first += size) {
+    Chunk& chunk = chunks.emplace_back();
+    chunk.first_body = first;
+    chunk.last_body = std::min(first + size, unknowns.bodies());
+    chunk.first_block = block;
+    while (block < unknowns.blocks() && unknowns.body(block) < chunk.last_body) ++block;
+    chunk.last_block = block;
+  }
+  return chunks;
+}
+
+std::int64_t bytes_of(const std::vector<Chunk>& chunks) {
+  const auto bytes = [](const auto& records) {
+    return (records.inner.size() + records.cut.size()) * sizeof(records.inner[0]);
+  };
+  std::size_t sum = 0;
+  for (const Chunk& chunk : chunks) sum += bytes(chunk.central) + bytes(chunk.ball) + bytes(chunk.general);
+  return static_cast<std::int64_t>(sum);
+}
+
 }  // namespace
+
+struct StiffnessProduct::Data {
+  Data(product::Layout where, std::int32_t bodies, std::vector<Chunk> parts)
+      : layout(std::move(where)),
+        chunks(std::move(parts)),
+        // One body more than there are: the one at rest behind walls.
+        x(static_cast<std::size_t>(layout.stride) * (static_cast<std::size_t>(bodies) + 1)) {}
+
+  /// Calls act(chunk) for all chunks, on all threads.
+  template <class Act>
+  void for_each_chunk(const Act& act) {
+    for_chunks(std::ssize(chunks), 1,
+               [&](std::int64_t c, std::int64_t, std::int64_t) { act(chunks[static_cast<std::size_t>(c)]); });
+  }
+
+  product::Layout layout;
+  std::vector<Chunk> chunks;
+  PaddedVector x;
+  const product::Kernel* kernel = &product::best_kernel();
+  std::int64_t record_bytes = 0;
+  std::int64_t products = 0;
+};
 
 StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, std::span<const ContactElement> elements,
                                    std::span<const double> scale) {
   const std::int32_t bodies = unknowns.bodies();
+  const std::vector<Kind> kinds = kinds_of(elements);
   // Contacts with shear read rotations even where every body holds its own.
-  const bool turns = std::any_of(elements.begin(), elements.end(),
-                                 [](const ContactElement& e) { return kind_of(e) != Kind::central; });
-  data_ = std::make_unique<Data>(unknowns, bodies, turns, full_scaling(unknowns, scale));
-  EIGENGRAIN_ASSERT(static_cast<std::int64_t>(data_->scale.size()) == unknowns.size(), data_->scale.size(),
-                    unknowns.size());
+  const bool turns = std::any_of(kinds.begin(), kinds.end(), [](Kind kind) { return kind != Kind::central; });
+  data_ = std::make_unique<Data>(layout_of(unknowns, turns, scale), bodies, empty_chunks(unknowns));
+  EIGENGRAIN_ASSERT(size() == unknowns.size(), size(), unknowns.size());
   const Visits visits(unknowns, bodies, elements);
-  const std::int32_t size = chunk_size(bodies);
-  for (std::int32_t first = 0; first < bodies; first += size) {
-    Chunk& chunk = data_->chunks.emplace_back();
-    chunk.first = first;
-    chunk.last = std::min(first + size, bodies);
-  }
-  for_chunks(static_cast<std::int64_t>(data_->chunks.size()), 1,
-             [&](std::int64_t c, std::int64_t, std::int64_t) {
-               Chunk& chunk = data_->chunks[static_cast<std::size_t>(c)];
-               chunk.central = make_records<CentralRecord>(chunk, Kind::central, visits, elements, bodies);
-               chunk.ball = make_records<BallRecord>(chunk, Kind::ball, visits, elements, bodies);
-               chunk.general = make_records<GeneralRecord>(chunk, Kind::general, visits, elements, bodies);
-             });
-  const auto bytes = [](const auto& records) {
-    return (records.inner.size() + records.cut.size()) * sizeof(records.inner[0]);
-  };
-  for (const Chunk& chunk : data_->chunks)
-    data_->record_bytes +=
-        static_cast<std::int64_t>(bytes(chunk.central) + bytes(chunk.ball) + bytes(chunk.general));
+  data_->for_each_chunk([&](Chunk& chunk) {
+    chunk.central = make_records<CentralRecord>(chunk, Kind::central, visits, elements, kinds, bodies);
+    chunk.ball = make_records<BallRecord>(chunk, Kind::ball, visits, elements, kinds, bodies);
+    chunk.general = make_records<GeneralRecord>(chunk, Kind::general, visits, elements, kinds, bodies);
+  });
+  data_->record_bytes = bytes_of(data_->chunks);
 }
 
 StiffnessProduct::~StiffnessProduct() = default;
@@ -263,7 +300,7 @@ StiffnessProduct::StiffnessProduct(StiffnessProduct&&) noexcept = default;
 StiffnessProduct& StiffnessProduct::operator=(StiffnessProduct&&) noexcept = default;
 
 std::int64_t StiffnessProduct::size() const {
-  return static_cast<std::int64_t>(data_->scale.size());
+  return std::ssize(data_->layout.scale);
 }
 std::int64_t StiffnessProduct::record_bytes() const {
   return data_->record_bytes;
@@ -274,35 +311,15 @@ std::int64_t StiffnessProduct::products() const {
 
 void StiffnessProduct::apply(std::span<const double> x, std::span<double> y) {
   Data& d = *data_;
-  EIGENGRAIN_ASSERT(x.size() == d.scale.size() && y.size() == d.scale.size(), x.size(), y.size(),
-                    d.scale.size());
+  EIGENGRAIN_ASSERT(std::ssize(x) == size() && std::ssize(y) == size(), x.size(), y.size(), size());
   ++d.products;
-  double* padded_x = d.x.data();
-  double* padded_y = d.y.data();
-  const auto blocks = static_cast<std::int64_t>(d.slot.size());
-
-  // x <- S x, padded
-  for_chunks(blocks, 4096, [&](std::int64_t begin, std::int64_t end, std::int64_t) {
-    for (std::int64_t block = begin; block < end; ++block) {
-      const auto from = static_cast<std::size_t>(3 * block);
-      double* to = padded_x + d.slot[static_cast<std::size_t>(block)];
-      for (std::size_t k = 0; k < 3; ++k) to[k] = d.scale[from + k] * x[from + k];
-    }
-  });
-  // y <- K x, chunk by chunk
-  for_chunks(static_cast<std::int64_t>(d.chunks.size()), 1, [&](std::int64_t c, std::int64_t, std::int64_t) {
-    const Chunk& chunk = d.chunks[static_cast<std::size_t>(c)];
-    std::fill(padded_y + std::int64_t{d.stride} * chunk.first, padded_y + std::int64_t{d.stride} * chunk.last,
-              0.0);
-    d.kernel(chunk, d.stride, padded_x, padded_y);
-  });
-  // y <- S y
-  for_chunks(blocks, 4096, [&](std::int64_t begin, std::int64_t end, std::int64_t) {
-    for (std::int64_t block = begin; block < end; ++block) {
-      const auto to = static_cast<std::size_t>(3 * block);
-      const double* from = padded_y + d.slot[static_cast<std::size_t>(block)];
-      for (std::size_t k = 0; k < 3; ++k) y[to + k] = d.scale[to + k] * from[k];
-    }
+  // All of x before any of y: a chunk reads the bodies of other chunks.
+  d.for_each_chunk([&](const Chunk& chunk) { d.kernel->pad(d.layout, chunk, x.data(), d.x.data()); });
+  d.for_each_chunk([&](const Chunk& chunk) {
+    const auto bodies = static_cast<std::size_t>(chunk.last_body - chunk.first_body);
+    double* sums = zeroed_sums(static_cast<std::size_t>(d.layout.stride) * bodies);
+    d.kernel->multiply(d.layout, chunk, d.x.data(), sums);
+    d.kernel->strip(d.layout, chunk, sums, y.data());
   });
 }
 

@@ -1,7 +1,9 @@
 // The inner loop of the matrix-free product. This file is compiled once for each instruction set
-// (CMakeLists.txt); EIGENGRAIN_KERNEL is the name that it gives its function there. A vector of space is one
+// (CMakeLists.txt); EIGENGRAIN_KERNEL is the name of what it offers there. A vector of space is one
 // 4-wide register whose last lane is padding: it is zero in x, and what lands there in y is never read.
 #include "product_records.hpp"
+
+#include <iterator>
 
 namespace eigengrain::assembly::product {
 namespace {
@@ -14,6 +16,12 @@ inline Lanes load(const double* from) {
 }
 inline Lanes load_unaligned(const double* from) {
   return *reinterpret_cast<const UnalignedLanes*>(from);
+}
+inline void store(double* to, Lanes v) {
+  *reinterpret_cast<Lanes*>(to) = v;
+}
+inline void store_unaligned(double* to, Lanes v) {
+  *reinterpret_cast<UnalignedLanes*>(to) = v;
 }
 inline void add_to(double* to, Lanes v) {
   *reinterpret_cast<Lanes*>(to) += v;
@@ -73,50 +81,83 @@ inline EndForces force(const GeneralRecord& c, const Vector6& near, const double
   return {{-f, -(cross(lever_near, f) + m)}, {f, cross(lever_far, f) + m}};
 }
 
-template <bool Rotation, class Record>
-inline void apply_records(const Records<Record>& records, std::int32_t first, std::int32_t bodies,
-                          const double* x, double* y) {
-  constexpr int stride = Rotation ? rotation_stride : translation_stride;
-  for (std::int32_t i = 0; i < bodies; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    const double* x_near = x + std::int64_t{stride} * (first + i);
+/// Records ahead of the present one whose far ends are asked for: long enough for memory to answer. The far
+/// ends are the one thing here that a processor cannot foresee; without this it waits for them half the time.
+constexpr std::ptrdiff_t lookahead = 24;
+
+template <bool Rotation, bool BothEnds, class Record>
+inline void multiply_list(const std::vector<Record>& records, std::int64_t first_body, const double* x,
+                          double* sums) {
+  constexpr std::int64_t stride = Rotation ? rotation_stride : translation_stride;
+  const Record* const last = records.data() + std::ssize(records) - 1;
+  for (const Record* c = records.data(); c <= last; ++c) {
+    const Record& ahead = last - c > lookahead ? c[lookahead] : *last;
+    __builtin_prefetch(x + stride * ahead.far_body);
+    if constexpr (BothEnds) __builtin_prefetch(sums + stride * (ahead.far_body - first_body), 1);
+
+    const double* x_near = x + stride * c->near_body;
     Vector6 near{load(x_near), Lanes{}};
     if constexpr (Rotation) near.theta = load(x_near + 4);
-    Vector6 sum{Lanes{}, Lanes{}};
-    for (std::int64_t c = records.rows.inner[row]; c < records.rows.inner[row + 1]; ++c) {
-      const Record& record = records.inner[static_cast<std::size_t>(c)];
-      const std::int64_t far = std::int64_t{stride} * record.other;
-      const EndForces f = force(record, near, x + far);
-      sum.u += f.near.u;
-      add_to(y + far, f.far.u);
-      if constexpr (Rotation) {
-        sum.theta += f.near.theta;
-        add_to(y + far + 4, f.far.theta);
-      }
+    const EndForces f = force(*c, near, x + stride * c->far_body);
+    double* sum_near = sums + stride * (c->near_body - first_body);
+    add_to(sum_near, f.near.u);
+    if constexpr (Rotation) add_to(sum_near + 4, f.near.theta);
+    if constexpr (BothEnds) {
+      double* sum_far = sums + stride * (c->far_body - first_body);
+      add_to(sum_far, f.far.u);
+      if constexpr (Rotation) add_to(sum_far + 4, f.far.theta);
     }
-    for (std::int64_t c = records.rows.cut[row]; c < records.rows.cut[row + 1]; ++c) {
-      const Record& record = records.cut[static_cast<std::size_t>(c)];
-      const EndForces f = force(record, near, x + std::int64_t{stride} * record.other);
-      sum.u += f.near.u;
-      if constexpr (Rotation) sum.theta += f.near.theta;
-    }
-    double* y_near = y + std::int64_t{stride} * (first + i);
-    add_to(y_near, sum.u);
-    if constexpr (Rotation) add_to(y_near + 4, sum.theta);
   }
+}
+
+template <bool Rotation, class Record>
+inline void multiply_records(const Records<Record>& records, std::int64_t first_body, const double* x,
+                             double* sums) {
+  if (!records.inner.empty()) multiply_list<Rotation, true>(records.inner, first_body, x, sums);
+  if (!records.cut.empty()) multiply_list<Rotation, false>(records.cut, first_body, x, sums);
+}
+
+void multiply(const Layout& layout, const Chunk& chunk, const double* padded, double* sums) {
+  if (layout.stride == translation_stride)
+    return multiply_records<false>(chunk.central, chunk.first_body, padded, sums);
+  multiply_records<true>(chunk.central, chunk.first_body, padded, sums);
+  multiply_records<true>(chunk.ball, chunk.first_body, padded, sums);
+  multiply_records<true>(chunk.general, chunk.first_body, padded, sums);
+}
+
+// Vectors are packed, three numbers a block, and are read and written four at a time: the fourth belongs to
+// the next block and is dropped, or overwritten when its turn comes. The last block of a chunk must stop
+// short.
+
+void pad(const Layout& layout, const Chunk& chunk, const double* x, double* padded) {
+  const std::int32_t* slot = layout.slot.data();
+  const double* scale = layout.scale.data();
+  std::int64_t block = chunk.first_block;
+  for (; block + 1 < chunk.last_block; ++block) {
+    const Lanes scaled = load_unaligned(scale + 3 * block) * load_unaligned(x + 3 * block);
+    store(padded + std::int64_t{4} * slot[block], __builtin_shufflevector(scaled, Lanes{}, 0, 1, 2, 4));
+  }
+  for (; block < chunk.last_block; ++block)
+    for (std::int64_t k = 0; k < 3; ++k)
+      padded[std::int64_t{4} * slot[block] + k] = scale[3 * block + k] * x[3 * block + k];
+}
+
+void strip(const Layout& layout, const Chunk& chunk, const double* sums, double* y) {
+  const std::int32_t* slot = layout.slot.data();
+  const double* scale = layout.scale.data();
+  const std::int64_t start = std::int64_t{layout.stride} * chunk.first_body;
+  std::int64_t block = chunk.first_block;
+  for (; block + 1 < chunk.last_block; ++block)
+    store_unaligned(y + 3 * block,
+                    load_unaligned(scale + 3 * block) * load(sums + (std::int64_t{4} * slot[block] - start)));
+  for (; block < chunk.last_block; ++block)
+    for (std::int64_t k = 0; k < 3; ++k)
+      y[3 * block + k] = scale[3 * block + k] * sums[std::int64_t{4} * slot[block] - start + k];
 }
 
 }  // namespace
 
-void EIGENGRAIN_KERNEL(const Chunk& chunk, int stride, const double* x, double* y) {
-  const std::int32_t bodies = chunk.last - chunk.first;
-  if (stride == translation_stride) {
-    if (!chunk.central.rows.inner.empty()) apply_records<false>(chunk.central, chunk.first, bodies, x, y);
-    return;
-  }
-  if (!chunk.central.rows.inner.empty()) apply_records<true>(chunk.central, chunk.first, bodies, x, y);
-  if (!chunk.ball.rows.inner.empty()) apply_records<true>(chunk.ball, chunk.first, bodies, x, y);
-  if (!chunk.general.rows.inner.empty()) apply_records<true>(chunk.general, chunk.first, bodies, x, y);
-}
+extern const Kernel EIGENGRAIN_KERNEL;
+const Kernel EIGENGRAIN_KERNEL{pad, multiply, strip};
 
 }  // namespace eigengrain::assembly::product
