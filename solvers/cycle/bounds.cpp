@@ -10,47 +10,23 @@
 namespace eigengrain::cycle {
 namespace {
 
+using assembly::LinearSystem;
 using contact::ContactElement;
 using contact::no_body;
 
-/// Relative error of a computed block eigenvalue: 6×6 sums over a body's contacts, a tridiagonalisation and
-/// an iteration to 1e-13. Far below any difference that matters, and it keeps the bound on the safe side.
+/// Relative error of a computed block: 6×6 sums over a body's contacts. Far below any difference that
+/// matters, and it keeps the bound on the safe side.
 constexpr double rounding = 1e-12;
 
 /// Diagonal of M_i^-½ of each body, zero where the component is fixed or does not exist.
-std::vector<Vec6> inverse_sqrt_masses(const model::Bodies& bodies, const assembly::Unknowns& unknowns) {
-  std::vector<Vec6> scale(bodies.position.size(), Vec6::Zero());
-  for (std::int32_t body = 0; body < bodies.size(); ++body) {
-    const auto i = static_cast<std::size_t>(body);
-    for (int k = 0; k < 6; ++k) {
-      const std::int32_t block = k < 3 ? unknowns.translation(body) : unknowns.rotation(body);
-      if (block == assembly::Unknowns::none || bodies.fixed[i].component(k)) continue;
-      scale[i][k] = 1.0 / std::sqrt(k < 3 ? bodies.mass[i] : bodies.inertia[i]);
-    }
-  }
-  return scale;
-}
-
-/// K_c,ii of one end: B_iᵀ D B_i, lower triangle. The same for both ends but for the lever.
-Mat6 end_block(const ContactElement& element, const Vec3& lever) {
-  const Mat3 d = element.stiffness.translation(element.normal);
-  const Mat3 skew = cross_matrix(lever);
-  const Mat3 d_skew = d * skew;
-  Mat6 block;
-  block.topLeftCorner<3, 3>() = d;
-  block.bottomLeftCorner<3, 3>() = -d_skew.transpose();
-  block.bottomRightCorner<3, 3>() = element.stiffness.rotation(element.normal) - skew * d_skew;
-  block.topRightCorner<3, 3>() = -d_skew;
-  return block;
-}
-
-/// K of a body that touches its own image: B = B_a + B_b, of which only the rotation about the contact
-/// survives, (R_a - R_b) × θ.
-Mat6 self_block(const ContactElement& element) {
-  const Mat3 skew = cross_matrix(element.lever_a - element.lever_b);
-  Mat6 block = Mat6::Zero();
-  block.bottomRightCorner<3, 3>() = -skew * element.stiffness.translation(element.normal) * skew;
-  return block;
+std::vector<Vec6> scale_of_bodies(const LinearSystem& system) {
+  const assembly::Unknowns& unknowns = system.unknowns;
+  const std::vector<double> scale = system.inverse_sqrt_mass();
+  std::vector<Vec6> result(static_cast<std::size_t>(unknowns.bodies()), Vec6::Zero());
+  for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
+    result[unknowns.body(block)].segment<3>(unknowns.is_rotation(block) ? 3 : 0) =
+        Eigen::Map<const Vec3>(&scale[std::size_t{3} * block]);
+  return result;
 }
 
 /// mean + √5 deviation of the six eigenvalues, from trace and norm: no eigenvalue is larger (Wolkowicz and
@@ -70,78 +46,46 @@ double damped_timestep(double undamped_dt, double local_damping) {
   return undamped_dt / std::sqrt(1.0 + local_damping);
 }
 
-double diagonal_estimate(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                         std::span<const ContactElement> elements) {
-  std::vector<Vec6> stiffness(bodies.position.size(), Vec6::Zero());
-  for (const ContactElement& element : elements) {
-    stiffness[static_cast<std::size_t>(element.a)] += end_block(element, element.lever_a).diagonal();
-    if (element.b != no_body)
-      stiffness[static_cast<std::size_t>(element.b)] += end_block(element, element.lever_b).diagonal();
+double diagonal_estimate(const LinearSystem& system) {
+  const std::vector<Vec6> scale = scale_of_bodies(system);
+  std::vector<Vec6> stiffness(scale.size(), Vec6::Zero());
+  for (const ContactElement& element : system.elements) {
+    stiffness[element.a] += contact::end_block(element, element.lever_a).diagonal();
+    if (element.b != no_body) stiffness[element.b] += contact::end_block(element, element.lever_b).diagonal();
   }
-  const std::vector<Vec6> scale = inverse_sqrt_masses(bodies, unknowns);
   double largest = 0;
   for (std::size_t i = 0; i < stiffness.size(); ++i)
     largest = std::max(largest, scale[i].cwiseAbs2().cwiseProduct(stiffness[i]).maxCoeff());
-  return largest > 0 ? 1.0 / std::sqrt(largest) : std::numeric_limits<double>::infinity();
+  return timestep_of(4 * largest);
 }
 
-BlockBound::BlockBound(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                       std::span<const ContactElement> elements)
-    : elements_(elements),
-      offsets_(bodies.position.size() + 1, 0),
-      scale_(inverse_sqrt_masses(bodies, unknowns)),
-      weight_(bodies.position.size(), 1.0) {
-  const auto moves = [&](std::int32_t body) {
-    return body != no_body && !scale_[static_cast<std::size_t>(body)].isZero(0);
-  };
-  const auto each_end = [&](const auto& act) {
-    for (std::size_t c = 0; c < elements.size(); ++c) {
-      const auto index = static_cast<std::int32_t>(c);
-      const ContactElement& e = elements[c];
-      if (e.a == e.b) {
-        if (moves(e.a)) act(e.a, End{index, no_body, false, true});
-        continue;
-      }
-      const bool a = moves(e.a);
-      const bool b = moves(e.b);
-      if (a) act(e.a, End{index, b ? e.b : no_body, false, false});
-      if (b) act(e.b, End{index, a ? e.a : no_body, true, false});
-    }
-  };
-  each_end([&](std::int32_t body, const End&) { ++offsets_[static_cast<std::size_t>(body) + 1]; });
-  for (std::size_t i = 1; i < offsets_.size(); ++i) offsets_[i] += offsets_[i - 1];
-  ends_.resize(static_cast<std::size_t>(offsets_.back()));
-  std::vector<std::int64_t> next(offsets_.begin(), offsets_.end() - 1);
-  each_end([&](std::int32_t body, const End& end) {
-    ends_[static_cast<std::size_t>(next[static_cast<std::size_t>(body)]++)] = end;
-  });
+BlockBound::BlockBound(const LinearSystem& system)
+    : system_(system), scale_(scale_of_bodies(system)), weight_(scale_.size(), 1.0) {
+  std::vector<std::int32_t> body_of_end;
+  body_of_end.reserve(2 * system.elements.size());
+  for (const ContactElement& e : system.elements) {
+    body_of_end.push_back(e.a);
+    // A body that touches its own image has the contact once, as a whole.
+    body_of_end.push_back(e.a == e.b ? no_body : e.b);
+  }
+  ends_ = group_by_row(system.unknowns.bodies(), body_of_end);
 }
 
 Mat6 BlockBound::block(std::int32_t body) const {
-  const auto i = static_cast<std::size_t>(body);
+  const auto moves = [&](std::int32_t other) { return other != no_body && !scale_[other].isZero(0); };
   Mat6 sum = Mat6::Zero();
-  for (std::int64_t k = offsets_[i]; k < offsets_[i + 1]; ++k) {
-    const End& end = ends_[static_cast<std::size_t>(k)];
-    const ContactElement& element = elements_[static_cast<std::size_t>(end.element)];
-    if (end.whole) {
-      sum += self_block(element);
+  for (const std::int32_t end : ends_.links(body)) {
+    const ContactElement& element = system_.elements[end / 2];
+    if (element.a == element.b) {
+      sum += contact::self_block(element);
       continue;
     }
-    const double factor =
-        end.other == no_body ? 1.0 : 1.0 + weight_[static_cast<std::size_t>(end.other)] / weight_[i];
-    sum += factor * end_block(element, end.second ? element.lever_b : element.lever_a);
+    const bool first = end % 2 == 0;
+    const std::int32_t other = first ? element.b : element.a;
+    const double factor = moves(other) ? 1.0 + weight_[other] / weight_[body] : 1.0;
+    sum += factor * contact::end_block(element, first ? element.lever_a : element.lever_b);
   }
-  return scale_[i].asDiagonal() * sum * scale_[i].asDiagonal();
-}
-
-std::vector<double> BlockBound::block_eigenvalues() const {
-  std::vector<double> lambda(weight_.size(), 0.0);
-  for_each_index(static_cast<std::int64_t>(lambda.size()), [&](std::int64_t body) {
-    const auto i = static_cast<std::size_t>(body);
-    if (offsets_[i] != offsets_[i + 1])
-      lambda[i] = largest_eigenvalue(block(static_cast<std::int32_t>(body)));
-  });
-  return lambda;
+  return scale_[body].asDiagonal() * sum * scale_[body].asDiagonal();
 }
 
 double BlockBound::timestep() const {
@@ -149,35 +93,38 @@ double BlockBound::timestep() const {
   const auto bodies = static_cast<std::int64_t>(weight_.size());
   std::vector<double> largest_of_chunk(static_cast<std::size_t>((bodies + chunk_size - 1) / chunk_size), 0.0);
   for_chunks(bodies, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
-    double& largest = largest_of_chunk[static_cast<std::size_t>(chunk)];
+    double& largest = largest_of_chunk[chunk];
     for (std::int64_t body = begin; body < end; ++body) {
       const Mat6 s = block(static_cast<std::int32_t>(body));
       // Few bodies can hold the largest eigenvalue; the others need none.
       if (eigenvalue_bound(s) > largest) largest = std::max(largest, largest_eigenvalue(s));
     }
   });
-  const double largest =
-      largest_of_chunk.empty() ? 0.0 : *std::max_element(largest_of_chunk.begin(), largest_of_chunk.end());
+  double largest = 0;
+  for (const double lambda : largest_of_chunk) largest = std::max(largest, lambda);
   return timestep_of(largest * (1.0 + rounding));
 }
 
 void BlockBound::sweep() {
-  const std::vector<double> lambda = block_eigenvalues();
+  std::vector<double> lambda(weight_.size());
+  for_each_index(static_cast<std::int64_t>(lambda.size()), [&](std::int64_t body) {
+    lambda[body] = largest_eigenvalue(block(static_cast<std::int32_t>(body)));
+  });
   // d_i <- d_i λ_i. A body whose block is zero moves nothing; its weight must only stay positive.
-  for (std::size_t i = 0; i < weight_.size(); ++i)
+  double largest = 0;
+  for (std::size_t i = 0; i < weight_.size(); ++i) {
     if (lambda[i] > 0) weight_[i] *= lambda[i];
-  const double largest = weight_.empty() ? 1.0 : *std::max_element(weight_.begin(), weight_.end());
+    largest = std::max(largest, weight_[i]);
+  }
   for (double& d : weight_) d /= largest;
 }
 
-double block_bound(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                   std::span<const ContactElement> elements) {
-  return BlockBound(bodies, unknowns, elements).timestep();
+double block_bound(const LinearSystem& system) {
+  return BlockBound(system).timestep();
 }
 
-double scaled_block_bound(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                          std::span<const ContactElement> elements, int sweeps) {
-  BlockBound bound(bodies, unknowns, elements);
+double scaled_block_bound(const LinearSystem& system, int sweeps) {
+  BlockBound bound(system);
   for (int sweep = 0; sweep < sweeps; ++sweep) bound.sweep();
   return bound.timestep();
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "eigengrain/assembly/unknowns.hpp"
-#include "eigengrain/model/bodies.hpp"
+#include "eigengrain/assembly/linear_system.hpp"
 
 #include "handles.hpp"
 
@@ -9,6 +8,6 @@ namespace eigengrain::petsc {
 
 /// M as an assembled PETSc matrix: diagonal, in the format and layout of StiffnessMatrix. Masked components
 /// carry their mass, so that M is never singular.
-Matrix mass_matrix(const model::Bodies& bodies, const assembly::Unknowns& unknowns);
+Matrix mass_matrix(const assembly::LinearSystem& system);
 
 }  // namespace eigengrain::petsc

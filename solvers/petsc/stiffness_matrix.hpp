@@ -11,10 +11,11 @@ namespace eigengrain::petsc {
 
 /// K as an assembled PETSc matrix: BAIJ with blocks of 3, both triangles; masked rows and columns are zero.
 ///
-/// The pattern is laid down once, for a contact graph; assemble() may then be called as often as stiffnesses
-/// change, without any allocation. It is a sink of assembly::assemble_stiffness:
+/// The pattern is laid down once, for a contact graph. It is then a sink of assembly::assemble_stiffness, and
 ///
 ///     matrix.begin(); assemble_stiffness(model, matrix); matrix.end();
+///
+/// may be repeated as often as stiffnesses change, without any allocation. It refers to the unknowns given.
 class StiffnessMatrix {
  public:
   /// elements: the contacts whose ends make the pattern; their stiffness is not read.

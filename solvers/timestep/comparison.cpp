@@ -1,6 +1,6 @@
 #include "eigengrain/timestep/comparison.hpp"
 
-#include "eigengrain/assembly/stiffness.hpp"
+#include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/bounds.hpp"
 
@@ -29,24 +29,20 @@ Estimate judged(std::string name, std::string basis, bool proven, const Truth& t
 }  // namespace
 
 Comparison compare(const assembly::Model& model, const TruthOptions& options) {
-  const std::vector<contact::ContactElement> elements = assembly::contact_elements(model);
-  const assembly::Unknowns unknowns(model.bodies, elements);
-  Comparison result{
-      .bodies = model.bodies.size(),
-      .contacts = static_cast<std::int64_t>(elements.size()),
-      .unknowns = static_cast<std::int64_t>(unknowns.free_components().size()),
-      .set_aside = static_cast<std::int64_t>(unknowns.set_aside().size()),
-      .truth = critical_timestep(model.bodies, unknowns, elements, model.local_damping, options),
-      .estimates = {}};
+  const assembly::LinearSystem system(model);
+  Comparison result{.bodies = model.bodies.size(),
+                    .contacts = static_cast<std::int64_t>(system.elements.size()),
+                    .unknowns = static_cast<std::int64_t>(system.unknowns.free_components().size()),
+                    .set_aside = static_cast<std::int64_t>(system.unknowns.set_aside().size()),
+                    .truth = critical_timestep(system, model.local_damping, options),
+                    .estimates = {}};
   const auto add = [&](std::string name, std::string basis, bool proven, const auto& compute) {
     result.estimates.push_back(judged(std::move(name), std::move(basis), proven, result.truth, compute));
   };
-  add("diagonal", "the seed's rule, eq. 1.31", false,
-      [&] { return cycle::diagonal_estimate(model.bodies, unknowns, elements); });
-  add("block-bound", "6x6 blocks, walls counted once", true,
-      [&] { return cycle::block_bound(model.bodies, unknowns, elements); });
+  add("diagonal", "the seed's rule, eq. 1.31", false, [&] { return cycle::diagonal_estimate(system); });
+  add("block-bound", "6x6 blocks, walls counted once", true, [&] { return cycle::block_bound(system); });
   add("scaled-block-bound", "the same after 3 Collatz-Wielandt sweeps", true,
-      [&] { return cycle::scaled_block_bound(model.bodies, unknowns, elements, 3); });
+      [&] { return cycle::scaled_block_bound(system, 3); });
   return result;
 }
 

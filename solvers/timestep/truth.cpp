@@ -1,6 +1,5 @@
 #include "eigengrain/timestep/truth.hpp"
 
-#include "eigengrain/assembly/mass.hpp"
 #include "eigengrain/assembly/product.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/timer.hpp"
@@ -92,17 +91,16 @@ double relative_residual(Mat matrix, Vec x, double lambda) {
 
 }  // namespace
 
-Truth critical_timestep(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                        std::span<const contact::ContactElement> elements, double local_damping,
+Truth critical_timestep(const assembly::LinearSystem& system, double local_damping,
                         const TruthOptions& options) {
   Truth truth{.dt = std::numeric_limits<double>::infinity(),
               .limit = std::numeric_limits<double>::infinity()};
-  const std::vector<double> scale = assembly::inverse_sqrt_mass(bodies, unknowns);
-  if (scale.empty() || elements.empty()) return truth;
+  const std::vector<double> scale = system.inverse_sqrt_mass();
+  if (scale.empty()) return truth;
   petsc::start();
 
   const Stopwatch watch;
-  StiffnessProduct product(unknowns, elements, scale);
+  StiffnessProduct product(system.unknowns, system.elements, scale);
   const petsc::Matrix matrix = shell(product);
   const petsc::Vector x = start_vector(matrix.get(), scale, options.seed);
   const petsc::Eigensolver solver = largest_eigenvalue_solver(matrix.get(), x.get(), options);

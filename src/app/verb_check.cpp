@@ -1,4 +1,4 @@
-#include "eigengrain/assembly/stiffness.hpp"
+#include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 #include "eigengrain/io/scene_reader.hpp"
 
@@ -102,7 +102,8 @@ struct Report {
   explicit Report(const model::Scene& asked)
       : scene(asked),
         model(assembly::build_model(asked)),
-        unknowns(model.bodies, assembly::contact_elements(model)),
+        system(model),
+        unknowns(system.unknowns),
         groups(summarise(model.contacts)),
         steps(passes(asked, unknowns, groups)),
         absent(left_out(asked, model, unknowns, groups)),
@@ -111,7 +112,8 @@ struct Report {
 
   const model::Scene& scene;
   assembly::Model model;
-  assembly::Unknowns unknowns;
+  assembly::LinearSystem system;
+  const assembly::Unknowns& unknowns;
   std::vector<GroupSummary> groups;
   std::vector<std::string> steps;
   std::vector<std::string> absent;

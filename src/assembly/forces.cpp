@@ -13,7 +13,7 @@ struct Trial {
   Trial(const Model& model, const Displacement& displacement) : moved(displacement) {
     position.reserve(model.bodies.position.size());
     for (std::size_t i = 0; i < model.bodies.position.size(); ++i)
-      position.push_back(model.bodies.position[i] + displacement.translation[i]);
+      position.emplace_back(model.bodies.position[i] + displacement.translation[i]);
   }
   SideMotion body(std::int32_t i) const {
     const auto row = static_cast<std::size_t>(i);

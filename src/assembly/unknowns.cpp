@@ -33,7 +33,7 @@ Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::Contact
     if (fixed == 7) return;
     block_[static_cast<std::size_t>(body)][static_cast<std::size_t>(which)] = blocks();
     body_.push_back(body);
-    rotation_.push_back(static_cast<std::uint8_t>(which));
+    is_rotation_.push_back(static_cast<std::uint8_t>(which));
     mask_.push_back(fixed);
     rotations_ += which;
   };
@@ -44,10 +44,8 @@ Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::Contact
       if (!fixed.all()) set_aside_.push_back(body);
       continue;
     }
-    const std::int32_t before = blocks();
     number(body, 0, fixed.translation());
     if (wanted.turned) number(body, 1, fixed.rotation());
-    if (blocks() > before) ++moving_bodies_;
   }
 }
 
@@ -56,7 +54,7 @@ std::vector<std::int32_t> Unknowns::free_components() const {
   result.reserve(static_cast<std::size_t>(size()));
   for (std::int32_t block = 0; block < blocks(); ++block)
     for (int k = 0; k < block_size; ++k)
-      if (((mask(block) >> k) & 1) == 0) result.push_back(block_size * block + k);
+      if (!is_fixed(block, k)) result.push_back(block_size * block + k);
   return result;
 }
 

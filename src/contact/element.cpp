@@ -20,19 +20,30 @@ Mat6 elasticity(const ContactElement& element) {
   return d;
 }
 
+// The columns of B are (-1, [R_a]×) and (1, -[R_b]×); [r]× is skew, so its transpose is -[r]×.
+
+Mat6 end_block(const ContactElement& element, const Vec3& lever) {
+  const Mat3 d = element.stiffness.translation(element.normal);
+  const Mat3 skew = cross_matrix(lever);
+  const Mat3 d_skew = d * skew;
+  Mat6 block;
+  block << d, -d_skew, -d_skew.transpose(), element.stiffness.rotation(element.normal) - skew * d_skew;
+  return block;
+}
+
+Mat6 self_block(const ContactElement& element) {
+  const Mat3 skew = cross_matrix(element.lever_a - element.lever_b);
+  Mat6 block = Mat6::Zero();
+  block.bottomRightCorner<3, 3>() = -skew * element.stiffness.translation(element.normal) * skew;
+  return block;
+}
+
 ContactBlocks stiffness_blocks(const ContactElement& element) {
   const Mat3 d = element.stiffness.translation(element.normal);
-  const Mat3 kappa = element.stiffness.rotation(element.normal);
   const Mat3 skew_a = cross_matrix(element.lever_a);
-  const Mat3 skew_b = cross_matrix(element.lever_b);
-  const Mat3 d_a = d * skew_a;
-  const Mat3 d_b = d * skew_b;
-
-  // Columns of B for the two ends: (-1, [R_a]x) and (1, -[R_b]x); [r]x is skew: its transpose is -[r]x.
-  ContactBlocks k;
-  k.aa << d, -d_a, -d_a.transpose(), kappa - skew_a * d_a;
-  k.bb << d, -d_b, -d_b.transpose(), kappa - skew_b * d_b;
-  k.ab << -d, d_b, d_a.transpose(), -kappa + skew_a * d_b;
+  const Mat3 d_b = d * cross_matrix(element.lever_b);
+  ContactBlocks k{end_block(element, element.lever_a), {}, end_block(element, element.lever_b)};
+  k.ab << -d, d_b, -skew_a * d, skew_a * d_b - element.stiffness.rotation(element.normal);
   return k;
 }
 

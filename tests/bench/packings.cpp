@@ -64,10 +64,7 @@ constexpr std::array<std::int64_t, 4> all_sizes{1'000, 10'000, 100'000, 1'000'00
 
 }  // namespace
 
-Packing::Packing(const model::Scene& scene)
-    : model(assembly::build_model(scene)),
-      elements(assembly::contact_elements(model)),
-      unknowns(model.bodies, elements) {}
+Packing::Packing(const model::Scene& scene) : WithModel{assembly::build_model(scene)}, LinearSystem(model) {}
 
 double Packing::coordination() const {
   std::int64_t ends = 0;

@@ -1,8 +1,7 @@
 #pragma once
 
+#include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/model.hpp"
-#include "eigengrain/assembly/unknowns.hpp"
-#include "eigengrain/contact/element.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -12,17 +11,17 @@
 /// What the benchmarks work on.
 namespace eigengrain::bench {
 
-/// A dense packing, brought to life.
-struct Packing {
+struct WithModel {
+  assembly::Model model;
+};
+
+/// A dense packing, brought to life, and its linear system.
+struct Packing : WithModel, assembly::LinearSystem {
   explicit Packing(const model::Scene& scene);
 
   /// Acting contacts a body has on average; one with a wall counts for one body.
   double coordination() const;
   std::int64_t contacts() const { return static_cast<std::int64_t>(elements.size()); }
-
-  assembly::Model model;
-  std::vector<contact::ContactElement> elements;
-  assembly::Unknowns unknowns;
 };
 
 /// Sliding linear contacts, radii within 10%: every body has rotations. Made once, then kept.

@@ -1,5 +1,4 @@
 // The matrix-free product beside the memory bandwidth of the same machine in the same minute.
-#include "eigengrain/assembly/mass.hpp"
 #include "eigengrain/assembly/product.hpp"
 
 #include "bench/measure.hpp"
@@ -35,8 +34,7 @@ BENCHMARK(triad)->ArgNames({"threads"})->Arg(1)->Arg(2)->UseManualTime()->Unit(b
 void product(benchmark::State& state) {
   const Packing& p = packing(state.range(0));
   const Threads threads(state.range(1));
-  assembly::StiffnessProduct k(p.unknowns, p.elements,
-                               assembly::inverse_sqrt_mass(p.model.bodies, p.unknowns));
+  assembly::StiffnessProduct k(p.unknowns, p.elements, p.inverse_sqrt_mass());
   const std::vector<double> x = random_numbers(k.size());
   std::vector<double> y(x.size());
   time_each(state, threads, [&] { k.apply(x, y); });

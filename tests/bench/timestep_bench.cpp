@@ -1,5 +1,4 @@
 // The true critical timestep and its estimates, in seconds and in units of matrix-free products.
-#include "eigengrain/assembly/mass.hpp"
 #include "eigengrain/assembly/product.hpp"
 #include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/timestep/truth.hpp"
@@ -16,7 +15,7 @@ namespace {
 class OneProduct {
  public:
   explicit OneProduct(const Packing& p)
-      : product_(p.unknowns, p.elements, assembly::inverse_sqrt_mass(p.model.bodies, p.unknowns)),
+      : product_(p.unknowns, p.elements, p.inverse_sqrt_mass()),
         x_(random_numbers(product_.size())),
         y_(x_.size()) {}
   void operator()() { product_.apply(x_, y_); }
@@ -45,7 +44,7 @@ void in_products(benchmark::State& state, const Packing& p, const Call& call) {
 void critical_timestep(benchmark::State& state) {
   const Packing& p = packing(state.range(0));
   timestep::Truth truth;
-  in_products(state, p, [&] { truth = timestep::critical_timestep(p.model.bodies, p.unknowns, p.elements); });
+  in_products(state, p, [&] { truth = timestep::critical_timestep(p); });
   state.counters["products"] = static_cast<double>(truth.products);
   state.counters["residual"] = truth.residual;
 }
@@ -53,24 +52,19 @@ BENCHMARK(critical_timestep)->Apply(sizes_and_threads)->Iterations(3);
 
 void diagonal_estimate(benchmark::State& state) {
   const Packing& p = packing(state.range(0));
-  in_products(state, p, [&] {
-    benchmark::DoNotOptimize(cycle::diagonal_estimate(p.model.bodies, p.unknowns, p.elements));
-  });
+  in_products(state, p, [&] { benchmark::DoNotOptimize(cycle::diagonal_estimate(p)); });
 }
 BENCHMARK(diagonal_estimate)->Apply(sizes_and_threads)->Iterations(5);
 
 void block_bound(benchmark::State& state) {
   const Packing& p = packing(state.range(0));
-  in_products(state, p,
-              [&] { benchmark::DoNotOptimize(cycle::block_bound(p.model.bodies, p.unknowns, p.elements)); });
+  in_products(state, p, [&] { benchmark::DoNotOptimize(cycle::block_bound(p)); });
 }
 BENCHMARK(block_bound)->Apply(sizes_and_threads)->Iterations(5);
 
 void scaled_block_bound(benchmark::State& state) {
   const Packing& p = packing(state.range(0));
-  in_products(state, p, [&] {
-    benchmark::DoNotOptimize(cycle::scaled_block_bound(p.model.bodies, p.unknowns, p.elements, 3));
-  });
+  in_products(state, p, [&] { benchmark::DoNotOptimize(cycle::scaled_block_bound(p, 3)); });
 }
 BENCHMARK(scaled_block_bound)->Apply(sizes_and_threads)->Iterations(5);
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "eigengrain/assembly/eigen_matrix.hpp"
+#include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/stiffness.hpp"
-#include "eigengrain/assembly/unknowns.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -71,21 +71,20 @@ class SceneBuilder {
   model::Scene scene_;
 };
 
-/// A model with its contacts as elements and its unknowns.
-struct System {
-  explicit System(assembly::Model m)
-      : model(std::move(m)), elements(assembly::contact_elements(model)), unknowns(model.bodies, elements) {}
+struct WithModel {
+  assembly::Model model;
+};
+
+/// A model and its linear system.
+struct System : WithModel, assembly::LinearSystem {
+  explicit System(assembly::Model m) : WithModel{std::move(m)}, LinearSystem(model) {}
   explicit System(const SceneBuilder& builder) : System(builder.build()) {}
 
   /// All eigenvalues of M⁻¹K on the free components, increasing.
   Eigen::VectorXd spectrum() const {
-    const Eigen::MatrixXd a = assembly::dense_scaled_stiffness(model.bodies, unknowns, elements);
+    const Eigen::MatrixXd a = assembly::dense_scaled_stiffness(*this);
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
   }
-
-  assembly::Model model;
-  std::vector<contact::ContactElement> elements;
-  assembly::Unknowns unknowns;
 };
 
 constexpr model::FixedComponents fix_rotations{0b111000};

@@ -1,7 +1,6 @@
 #include "eigengrain/assembly/block_diagonal.hpp"
 #include "eigengrain/assembly/eigen_matrix.hpp"
 #include "eigengrain/assembly/forces.hpp"
-#include "eigengrain/assembly/mass.hpp"
 #include "eigengrain/assembly/product.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
@@ -27,7 +26,6 @@ SceneBuilder two_and_one(const test::Springs& springs) {
 
 TEST(Unknowns, SetsAsideWhatNothingTouches) {
   const System s(two_and_one({.kn = 1, .ks = 1}));
-  EXPECT_EQ(s.unknowns.moving_bodies(), 2);
   EXPECT_EQ(s.unknowns.blocks(), 4);
   ASSERT_EQ(s.unknowns.set_aside().size(), 1U);
   EXPECT_EQ(s.model.bodies.identity[static_cast<std::size_t>(s.unknowns.set_aside()[0])], 2);
@@ -52,8 +50,10 @@ TEST(Unknowns, DropFixedVectorsAndMaskPartlyFixedOnes) {
   };
   EXPECT_EQ(s.unknowns.translation(row(0)), Unknowns::none);
   EXPECT_EQ(s.unknowns.rotation(row(0)), Unknowns::none);
-  EXPECT_EQ(s.unknowns.mask(s.unknowns.translation(row(1))), 0b101);
-  EXPECT_EQ(s.unknowns.mask(s.unknowns.rotation(row(1))), 0);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(s.unknowns.is_fixed(s.unknowns.translation(row(1)), k), k != 1);
+    EXPECT_FALSE(s.unknowns.is_fixed(s.unknowns.rotation(row(1)), k));
+  }
   EXPECT_NE(s.unknowns.translation(row(2)), Unknowns::none);
   EXPECT_EQ(s.unknowns.rotation(row(2)), Unknowns::none);
   EXPECT_EQ(s.unknowns.size(), 9);
@@ -143,7 +143,7 @@ TEST(ContactForces, MomentsBalanceUnderShear) {
 
 /// K x by the assembled matrix, for comparison with the product.
 Eigen::VectorXd by_matrix(const System& s, const Eigen::VectorXd& x) {
-  return stiffness_matrix(s.unknowns, s.elements) * x;
+  return stiffness_matrix(s) * x;
 }
 
 Eigen::VectorXd random_numbers(std::int64_t n, std::mt19937_64& random) {
@@ -226,7 +226,7 @@ TEST(BlockDiagonal, HoldsTheDiagonalBlocksOfTheMatrix) {
     const System s(scene);
     BlockDiagonal diagonal(s.model.bodies.size());
     assemble_stiffness(s.model, diagonal);
-    const Eigen::MatrixXd k = stiffness_matrix(s.unknowns, s.elements);
+    const Eigen::MatrixXd k = stiffness_matrix(s);
     for (std::int32_t body = 0; body < s.model.bodies.size(); ++body) {
       ASSERT_EQ(s.unknowns.rotation(body), s.unknowns.translation(body) + 1);
       const int first = 3 * s.unknowns.translation(body);
@@ -240,8 +240,8 @@ TEST(Mass, IsOnTheDiagonalAndMaskedNumbersDropOutOfItsRoot) {
   SceneBuilder builder({.kn = 1, .ks = 1});
   builder.ball({0, 0, 0}, 1, 4, model::FixedComponents(0b000010)).ball({1.9, 0, 0}, 1, 9);
   const System s(builder);
-  const std::vector<double> mass = mass_diagonal(s.model.bodies, s.unknowns);
-  const std::vector<double> root = inverse_sqrt_mass(s.model.bodies, s.unknowns);
+  const std::vector<double>& mass = s.mass;
+  const std::vector<double> root = s.inverse_sqrt_mass();
   const std::size_t u =
       static_cast<std::size_t>(3 * s.unknowns.translation(s.model.bodies.mass[0] == 4 ? 0 : 1));
   EXPECT_EQ(mass[u], 4.0);

@@ -40,7 +40,7 @@ TEST(Bounds, AreNeverAboveTheTruthInTenThousandScenes) {
     const double truth = 2 / std::sqrt(lambda);
     // The dense eigenvalue itself errs by some 1e-14.
     const double most = truth * (1 + 1e-13);
-    cycle::BlockBound bound(s.model.bodies, s.unknowns, s.elements);
+    cycle::BlockBound bound(s);
     double before = bound.timestep();
     EXPECT_LE(before, most);
     for (int sweep = 0; sweep < 4; ++sweep) {
@@ -50,7 +50,7 @@ TEST(Bounds, AreNeverAboveTheTruthInTenThousandScenes) {
       EXPECT_GE(after, before * (1 - 1e-11));  // Collatz-Wielandt: never worse
       before = after;
     }
-    const double estimate = cycle::diagonal_estimate(s.model.bodies, s.unknowns, s.elements) / truth;
+    const double estimate = cycle::diagonal_estimate(s) / truth;
     EXPECT_LE(estimate, std::sqrt(3.0) * (1 + 1e-12));
     unsafe_estimate = std::max(unsafe_estimate, estimate);
     if (HasFailure()) FAIL() << "scene " << scenes;

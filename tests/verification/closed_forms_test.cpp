@@ -18,7 +18,7 @@ using std::numbers::pi;
 using timestep::critical_timestep;
 
 double lambda_max(const System& s) {
-  const timestep::Truth truth = critical_timestep(s.model.bodies, s.unknowns, s.elements);
+  const timestep::Truth truth = critical_timestep(s);
   EXPECT_LT(truth.residual, 1e-8);
   return truth.lambda_max;
 }
@@ -214,7 +214,7 @@ TEST(LatticeSpectrum, SpheresThatSpinAlike) {
     Eigen::VectorXd spin = Eigen::VectorXd::Zero(s.unknowns.size());
     for (std::int32_t b = 0; b < s.unknowns.blocks(); ++b)
       if (s.unknowns.is_rotation(b)) spin.segment<3>(3 * b) = Vec3(1, 2, 3);
-    const Eigen::VectorXd force = assembly::stiffness_matrix(s.unknowns, s.elements) * spin;
+    const Eigen::VectorXd force = assembly::stiffness_matrix(s) * spin;
     const double lambda = 10.0 / 3 * z * ks;
     EXPECT_LT((force - 0.4 * lambda * spin).norm(), 1e-10 * force.norm()) << lattice.name;
   }
@@ -248,15 +248,14 @@ TEST(Diagonal, IsUnsafeForTheObliqueChain) {
 TEST(Bounds, AreExactForAPairAndACubicLattice) {
   const System pair(row(2, {.kn = 1, .ks = 0.4}, Vec3(1, 1, 1).normalized()));
   const double pair_dt = 2 / std::sqrt(2.8);
-  EXPECT_NEAR(cycle::block_bound(pair.model.bodies, pair.unknowns, pair.elements) / pair_dt, 1, 1e-10);
+  EXPECT_NEAR(cycle::block_bound(pair) / pair_dt, 1, 1e-10);
   const System cubic(make_lattice(simple_cubic(), {.kn = 1, .ks = 0.5}, {2, 2, 2}));
-  EXPECT_NEAR(cycle::block_bound(cubic.model.bodies, cubic.unknowns, cubic.elements) / (2 / std::sqrt(10)), 1,
-              1e-10);
+  EXPECT_NEAR(cycle::block_bound(cubic) / (2 / std::sqrt(10)), 1, 1e-10);
 }
 
 TEST(Limit, HasTheFactorOfLocalDamping) {
   const System s(row(3, {.kn = 1}));
-  const timestep::Truth truth = critical_timestep(s.model.bodies, s.unknowns, s.elements, 0.7);
+  const timestep::Truth truth = critical_timestep(s, 0.7);
   EXPECT_NEAR(truth.limit / truth.dt, 1 / std::sqrt(1.7), 1e-14);  // 0.76697
 }
 
@@ -264,15 +263,15 @@ TEST(Truth, IsInfiniteWhereContactsActOnFixedComponentsOnly) {
   const System s(
       SceneBuilder().ball({0, 0, 0.9}, 1, 1, model::FixedComponents(0b000100)).plane({0, 0, 0}, {0, 0, 1}));
   ASSERT_EQ(s.elements.size(), 1U);
-  const timestep::Truth truth = critical_timestep(s.model.bodies, s.unknowns, s.elements);
+  const timestep::Truth truth = critical_timestep(s);
   EXPECT_TRUE(std::isinf(truth.dt));
   EXPECT_EQ(truth.residual, 0.0);
 }
 
 TEST(Truth, IsInfiniteWhereNothingTouches) {
   const System s(SceneBuilder().ball({0, 0, 0}).ball({5, 0, 0}));
-  EXPECT_TRUE(std::isinf(critical_timestep(s.model.bodies, s.unknowns, s.elements).dt));
-  EXPECT_TRUE(std::isinf(cycle::block_bound(s.model.bodies, s.unknowns, s.elements)));
+  EXPECT_TRUE(std::isinf(critical_timestep(s).dt));
+  EXPECT_TRUE(std::isinf(cycle::block_bound(s)));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ double difference(const petsc::StiffnessMatrix& matrix, const System& s, std::mt
   EIGENGRAIN_PETSC(VecGetArrayRead(y.get(), &values));
   const Eigen::VectorXd found = Eigen::Map<const Eigen::VectorXd>(values, numbers.size());
   EIGENGRAIN_PETSC(VecRestoreArrayRead(y.get(), &values));
-  const Eigen::VectorXd expected = assembly::stiffness_matrix(s.unknowns, s.elements) * numbers;
+  const Eigen::VectorXd expected = assembly::stiffness_matrix(s) * numbers;
   return (found - expected).norm() / expected.norm();
 }
 
@@ -80,7 +80,7 @@ TEST(PetscMassMatrix, MakesTheGeneralisedProblemOfTheDefinition) {
   const System s(random_cluster(random, 12, {.kn = 1, .ks = 0.4}));
   petsc::StiffnessMatrix stiffness(s.unknowns, s.elements);
   assemble(stiffness, s);
-  const petsc::Matrix mass = petsc::mass_matrix(s.model.bodies, s.unknowns);
+  const petsc::Matrix mass = petsc::mass_matrix(s);
   petsc::Eigensolver solver;
   EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
   EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), stiffness.mat(), mass.get()));

@@ -16,12 +16,12 @@ class BlockDiagonal {
   explicit BlockDiagonal(std::int32_t bodies) : blocks_(static_cast<std::size_t>(bodies), Mat6::Zero()) {}
 
   void add(const contact::ContactElement& element) {
-    const contact::ContactBlocks k = contact::stiffness_blocks(element);
-    block(element.a) += k.aa;
-    if (element.b == contact::no_body) return;
-    block(element.b) += k.bb;
-    // A body that touches its own image couples with itself.
-    if (element.a == element.b) block(element.a) += k.ab + k.ab.transpose();
+    if (element.a == element.b) {
+      block(element.a) += contact::self_block(element);
+      return;
+    }
+    block(element.a) += contact::end_block(element, element.lever_a);
+    if (element.b != contact::no_body) block(element.b) += contact::end_block(element, element.lever_b);
   }
 
   /// [bodies]

@@ -6,10 +6,10 @@
 namespace eigengrain::assembly {
 
 /// The block with the rows and columns of fixed components set to zero.
-inline Mat3 masked(Mat3 block, std::uint8_t row_mask, std::uint8_t column_mask) {
+inline Mat3 masked(const Unknowns& unknowns, std::int32_t row, std::int32_t column, Mat3 block) {
   for (int k = 0; k < Unknowns::block_size; ++k) {
-    if (((row_mask >> k) & 1) != 0) block.row(k).setZero();
-    if (((column_mask >> k) & 1) != 0) block.col(k).setZero();
+    if (unknowns.is_fixed(row, k)) block.row(k).setZero();
+    if (unknowns.is_fixed(column, k)) block.col(k).setZero();
   }
   return block;
 }
@@ -27,7 +27,7 @@ void scatter(const contact::ContactElement& element, const Unknowns& unknowns, c
       for (std::size_t j = 0; j < 2; ++j) {
         if (rows[i] == Unknowns::none || columns[j] == Unknowns::none) continue;
         const Mat3 part = block.block<3, 3>(static_cast<int>(3 * i), static_cast<int>(3 * j));
-        add(rows[i], columns[j], masked(part, unknowns.mask(rows[i]), unknowns.mask(columns[j])));
+        add(rows[i], columns[j], masked(unknowns, rows[i], columns[j], part));
       }
   };
   one_pair(element.a, element.a, k.aa);

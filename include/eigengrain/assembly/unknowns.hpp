@@ -42,15 +42,13 @@ class Unknowns {
 
   /// The way back: the body of a block, and whether the block is its θ.
   std::int32_t body(std::int32_t block) const { return body_[static_cast<std::size_t>(block)]; }
-  bool is_rotation(std::int32_t block) const { return rotation_[static_cast<std::size_t>(block)] != 0; }
-  /// Bits 0-2: components of the block that are fixed.
-  std::uint8_t mask(std::int32_t block) const { return mask_[static_cast<std::size_t>(block)]; }
+  bool is_rotation(std::int32_t block) const { return is_rotation_[block] != 0; }
+  /// Whether component k = 0, 1, 2 of the block is fixed (masked).
+  bool is_fixed(std::int32_t block, int k) const { return ((mask_[block] >> k) & 1) != 0; }
 
   /// Numbers that are free to move, in increasing order: what spectra are made of.
   std::vector<std::int32_t> free_components() const;
 
-  /// Bodies with unknowns (u or θ numbered).
-  std::int32_t moving_bodies() const { return moving_bodies_; }
   /// Blocks that are a θ.
   std::int32_t rotations() const { return rotations_; }
   /// Bodies that are not fixed entirely, but that no acting contact touches.
@@ -59,10 +57,9 @@ class Unknowns {
  private:
   std::vector<std::array<std::int32_t, 2>> block_;
   std::vector<std::int32_t> body_;
-  std::vector<std::uint8_t> rotation_;
-  std::vector<std::uint8_t> mask_;
+  std::vector<std::uint8_t> is_rotation_;
+  std::vector<std::uint8_t> mask_;  ///< bits 0-2: fixed components
   std::vector<std::int32_t> set_aside_;
-  std::int32_t moving_bodies_ = 0;
   std::int32_t rotations_ = 0;
 };
 

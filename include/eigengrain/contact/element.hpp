@@ -40,6 +40,13 @@ Mat6 elasticity(const ContactElement& element);
 /// K = BᵀDB (seed eqs. 1.37-1.44), written out in blocks: about ten times cheaper than the product.
 ContactBlocks stiffness_blocks(const ContactElement& element);
 
+/// The diagonal block of one end: B_iᵀ D B_i, with that end's lever. The same form for both ends.
+Mat6 end_block(const ContactElement& element, const Vec3& lever);
+
+/// K of a body that touches its own image: B = B_a + B_b on one set of unknowns, of which only the rotation
+/// about the contact survives, (R_a - R_b) × θ.
+Mat6 self_block(const ContactElement& element);
+
 /// The same as one matrix [12×12] on (u_a, θ_a, u_b, θ_b). Symmetric, positive semidefinite, rank <= 6.
 Mat12 stiffness_matrix(const ContactElement& element);
 

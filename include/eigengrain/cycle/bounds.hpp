@@ -1,11 +1,8 @@
 #pragma once
 
-#include "eigengrain/assembly/unknowns.hpp"
-#include "eigengrain/contact/element.hpp"
-#include "eigengrain/model/bodies.hpp"
+#include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/base/adjacency.hpp"
 
-#include <cstdint>
-#include <span>
 #include <vector>
 
 /// Cheap estimates of the critical timestep: sums over the contacts of each body, no eigenvalue of the
@@ -18,11 +15,10 @@ namespace eigengrain::cycle {
 /// the damping acts like the mass M/(1 + α) (docs/theory.md).
 double damped_timestep(double undamped_dt, double local_damping);
 
-/// The seed's estimate (eq. 1.31): min over bodies and degrees of freedom of √(m/k), k the sum over the
-/// body's contacts of the diagonal terms of their stiffness matrices. Depends on the frame and is NOT a
-/// bound: up to 22% above the true critical step for two spheres, up to √3 in principle. s.
-double diagonal_estimate(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                         std::span<const contact::ContactElement> elements);
+/// PFC's estimate (eq. 1.31): min over bodies and degrees of freedom of √(m/k), k the sum over the body's
+/// contacts of the diagonal terms of their stiffness matrices. Depends on the frame and is NOT a bound: up to
+/// 22% above the true critical step for two spheres, up to √3 in principle. s.
+double diagonal_estimate(const assembly::LinearSystem& system);
 
 /// A proven lower bound of the true critical step, for any positive weights d of the bodies (docs/theory.md):
 ///
@@ -34,39 +30,27 @@ double diagonal_estimate(const model::Bodies& bodies, const assembly::Unknowns& 
 /// that d gives (Collatz-Wielandt), which can only improve it.
 class BlockBound {
  public:
-  BlockBound(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-             std::span<const contact::ContactElement> elements);
+  /// Refers to the system, which must outlive it.
+  explicit BlockBound(const assembly::LinearSystem& system);
 
-  /// The bound with the present weights, s. Rounding is on the safe side.
+  /// The bound with the present weights, s. Rounding is on the safe side. Cost O(contacts).
   double timestep() const;
   /// One Collatz-Wielandt sweep over all bodies. Cost O(contacts) and one 6×6 eigenvalue a body.
   void sweep();
 
  private:
   Mat6 block(std::int32_t body) const;
-  std::vector<double> block_eigenvalues() const;
 
-  /// An end of a contact at a body.
-  struct End {
-    std::int32_t element;
-    std::int32_t other;  ///< the moving body at the far end, or no_body
-    bool second;         ///< whether this is the element's second end
-    bool whole;          ///< a body that touches its own image: both ends at once
-  };
-
-  std::span<const contact::ContactElement> elements_;
-  std::vector<std::int64_t> offsets_;  ///< [bodies + 1] into ends_
-  std::vector<End> ends_;
+  const assembly::LinearSystem& system_;
+  Adjacency ends_;  ///< body -> its ends of contacts: 2c is the first of contact c, 2c + 1 the second
   std::vector<Vec6> scale_;     ///< [bodies] diagonal of M_i^-½, zero where there is no free component
   std::vector<double> weight_;  ///< [bodies] d
 };
 
 /// BlockBound with d = 1, s.
-double block_bound(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                   std::span<const contact::ContactElement> elements);
+double block_bound(const assembly::LinearSystem& system);
 
 /// BlockBound after some sweeps, s. Three prove 0.93-0.96 of the true step in dense packings.
-double scaled_block_bound(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                          std::span<const contact::ContactElement> elements, int sweeps = 3);
+double scaled_block_bound(const assembly::LinearSystem& system, int sweeps = 3);
 
 }  // namespace eigengrain::cycle

@@ -1,11 +1,8 @@
 #pragma once
 
-#include "eigengrain/assembly/unknowns.hpp"
-#include "eigengrain/contact/element.hpp"
-#include "eigengrain/model/bodies.hpp"
+#include "eigengrain/assembly/linear_system.hpp"
 
 #include <cstdint>
-#include <span>
 
 /// The true critical timestep: an eigenvalue of the whole system.
 namespace eigengrain::timestep {
@@ -31,8 +28,7 @@ struct Truth {
 /// The same to the bit on any number of threads. Throws SolverError when it does not converge.
 ///
 /// local_damping  α of the cycle; see cycle::damped_timestep
-Truth critical_timestep(const model::Bodies& bodies, const assembly::Unknowns& unknowns,
-                        std::span<const contact::ContactElement> elements, double local_damping = 0.0,
+Truth critical_timestep(const assembly::LinearSystem& system, double local_damping = 0.0,
                         const TruthOptions& options = {});
 
 }  // namespace eigengrain::timestep

@@ -1,6 +1,6 @@
 // Two balls pressed together, with a normal spring only: the bound and the true critical timestep, against
 // their closed forms.
-#include "eigengrain/assembly/stiffness.hpp"
+#include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 #include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/io/scene_reader.hpp"
@@ -47,17 +47,14 @@ bool agree(const char* what, double value, double expected, double tolerance) {
 }  // namespace
 
 int main() {
-  const assembly::Model model = assembly::build_model(two_balls());
-  const std::vector<contact::ContactElement> elements = assembly::contact_elements(model);
-  const assembly::Unknowns unknowns(model.bodies, elements);
+  const assembly::LinearSystem system(assembly::build_model(two_balls()));
 
   // λ_max of K = k [1 -1; -1 1] with mass m each is 2k/m; for two equal bodies the bound is exact.
   const double closed_form = 2 * std::sqrt(model::sphere_mass(radius, density) / (2 * stiffness));
-  bool good = agree("block bound", cycle::block_bound(model.bodies, unknowns, elements), closed_form, 1e-12);
+  bool good = agree("block bound", cycle::block_bound(system), closed_form, 1e-12);
 #ifdef WITH_SOLVERS
   petsc::start();
-  good = agree("true", timestep::critical_timestep(model.bodies, unknowns, elements).dt, closed_form, 1e-9) &&
-         good;
+  good = agree("true", timestep::critical_timestep(system).dt, closed_form, 1e-9) && good;
 #endif
   // The scene reader needs yaml-cpp: that it links is the point.
   good = io::read_scene_text(

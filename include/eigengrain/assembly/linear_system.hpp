@@ -1,0 +1,27 @@
+#pragma once
+
+#include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/unknowns.hpp"
+#include "eigengrain/contact/element.hpp"
+
+#include <vector>
+
+namespace eigengrain::assembly {
+
+/// K and M of a model as it stands, K factored into its contacts: what estimates, bounds and solvers are
+/// asked about. It owns what it holds; the model may go.
+struct LinearSystem {
+  explicit LinearSystem(const Model& model);
+
+  std::vector<contact::ContactElement> elements;
+  Unknowns unknowns;
+  /// [unknowns.size()] the diagonal of M: mass for a u (kg), moment of inertia for a θ (kg m²). Masked
+  /// components carry it too; it is never zero.
+  std::vector<double> mass;
+
+  /// [unknowns.size()] the diagonal of M^-½, with zeros at masked components: scaling K by it from both sides
+  /// gives the symmetric matrix whose eigenvalues are those of M⁻¹K on the free components (and zeros).
+  std::vector<double> inverse_sqrt_mass() const;
+};
+
+}  // namespace eigengrain::assembly
