@@ -10,16 +10,6 @@
 
 namespace eigengrain::app {
 
-std::string grouped(std::int64_t number) {
-  std::string digits = fmt::format("{}", number);
-  const std::size_t first = number < 0 ? 1 : 0;
-  for (std::size_t i = digits.size(); i > first + 3;) {
-    i -= 3;
-    digits.insert(i, ",");
-  }
-  return digits;
-}
-
 std::string counted(std::int64_t number, const std::string& one, const std::string& many) {
   return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
 }

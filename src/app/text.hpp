@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/base/text.hpp"
 #include "eigengrain/model/scene.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,8 +10,6 @@
 
 namespace eigengrain::app {
 
-/// 27440 -> "27,440".
-std::string grouped(std::int64_t number);
 /// "1 body", "10,000 bodies".
 std::string counted(std::int64_t number, const std::string& one, const std::string& many);
 
