@@ -34,20 +34,20 @@ void check_densities(const SceneDraft& draft, Diagnostics& diagnostics) {
 
 using MaterialPair = std::pair<std::int32_t, std::int32_t>;
 
-/// The pairs of materials that can meet, and whether balls meet balls there or a wall.
-std::set<std::pair<MaterialPair, bool>> meeting_pairs(const model::Scene& scene) {
+/// The pairs of materials that can meet.
+std::set<MaterialPair> meeting_pairs(const model::Scene& scene) {
   const std::vector<std::int64_t> balls = balls_of_materials(scene);
-  std::set<std::pair<MaterialPair, bool>> pairs;
-  for (std::size_t a = 0; a < balls.size(); ++a) {
-    if (balls[a] == 0) continue;
-    const auto i = static_cast<std::int32_t>(a);
-    for (std::size_t b = a; b < balls.size(); ++b) {
-      // A single ball can still meet its own periodic image.
-      const bool meet = a == b ? balls[a] > 1 || scene.cell.any() : balls[b] > 0;
-      if (meet) pairs.insert({{i, static_cast<std::int32_t>(b)}, false});
-    }
+  const auto count = static_cast<std::int32_t>(balls.size());
+  const auto balls_of = [&](std::int32_t material) { return balls[static_cast<std::size_t>(material)]; };
+  std::set<MaterialPair> pairs;
+  for (std::int32_t a = 0; a < count; ++a) {
+    if (balls_of(a) == 0) continue;
+    // A single ball can still meet its own periodic image.
+    if (balls_of(a) > 1 || scene.cell.any()) pairs.insert({a, a});
+    for (std::int32_t b = a + 1; b < count; ++b)
+      if (balls_of(b) > 0) pairs.insert({a, b});
     for (const model::Plane& wall : scene.walls)
-      if (wall.material >= 0) pairs.insert({{i, wall.material}, true});
+      if (wall.material >= 0) pairs.insert(std::minmax(a, wall.material));
   }
   return pairs;
 }
@@ -55,17 +55,14 @@ std::set<std::pair<MaterialPair, bool>> meeting_pairs(const model::Scene& scene)
 void check_rules(const Section& root, const SceneDraft& draft) {
   const model::Scene& scene = draft.scene;
   if (!draft.contacts_complete) return;
-  std::set<MaterialPair> told;
-  for (const auto& [pair, with_wall] : meeting_pairs(scene)) {
-    const MaterialPair sorted = std::minmax(pair.first, pair.second);
-    if (scene.rule_for(pair.first, pair.second) >= 0 || !told.insert(sorted).second) continue;
-    const std::string& first = scene.materials[static_cast<std::size_t>(pair.first)].name;
-    const std::string& second = scene.materials[static_cast<std::size_t>(pair.second)].name;
-    root.report("contacts",
-                fmt::format("no entry for balls of \"{0}\" against {2} of \"{1}\"; add e.g. "
-                            "\"- {{between: [{0}, {1}], law: linear, kn: 1e5 N/m}}\", or \"law: none\" if "
-                            "they do not see each other",
-                            first, second, with_wall ? "walls" : "balls"));
+  for (const auto& [a, b] : meeting_pairs(scene)) {
+    if (scene.rule_for(a, b) >= 0) continue;
+    root.report(
+        "contacts",
+        fmt::format("no entry for \"{0}\" and \"{1}\", which can meet; add e.g. \"- {{between: [{0}, "
+                    "{1}], law: linear, kn: 1e5 N/m}}\", or \"law: none\" if they do not see each other",
+                    scene.materials[static_cast<std::size_t>(a)].name,
+                    scene.materials[static_cast<std::size_t>(b)].name));
   }
 }
 

@@ -30,7 +30,10 @@ class TreeBuilder final : public YAML::EventHandler {
 
   Node result() { return std::move(root_); }
 
-  void OnDocumentStart(const YAML::Mark& /*mark*/) override {}
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (documents_++ > 0)
+      throw YAML::ParserException(mark, "a second document begins; one file holds one scene");
+  }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     take(make(Node::Kind::null, mark), anchor);
@@ -134,24 +137,7 @@ class TreeBuilder final : public YAML::EventHandler {
   std::vector<Open> open_;
   std::map<YAML::anchor_t, Node> anchored_;
   std::size_t copied_ = 0;
-};
-
-/// For what follows the first document.
-class AnotherDocument final : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override {
-    throw YAML::ParserException(mark, "a second document begins; one file holds one scene");
-  }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
-  }
-  void OnMapEnd() override {}
+  int documents_ = 0;
 };
 
 template <class Children>
@@ -190,8 +176,7 @@ Node parse_yaml(std::string_view text, const std::string& file, Diagnostics& dia
   try {
     std::istringstream input{std::string(text)};
     YAML::Parser parser(input);
-    AnotherDocument another;
-    if (parser.HandleNextDocument(builder)) parser.HandleNextDocument(another);
+    while (parser.HandleNextDocument(builder)) continue;
   } catch (const YAML::Exception& error) {
     diagnostics.add({file, line_of(error.mark)}, fmt::format("not valid YAML: {}", error.msg));
   }

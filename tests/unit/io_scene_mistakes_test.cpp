@@ -201,16 +201,16 @@ TEST(Mistakes, PairsWithoutAContactLaw) {
   EXPECT_THAT(
       reported({.contacts = "contacts: [{between: [grain, steel], law: none}]", .balls = two}),
       ElementsAre(
-          "scene.yaml:3: contacts: no entry for balls of \"grain\" against balls of \"grain\"; add e.g. "
+          "scene.yaml:3: contacts: no entry for \"grain\" and \"grain\", which can meet; add e.g. "
           "\"- {between: [grain, grain], law: linear, kn: 1e5 N/m}\", or \"law: none\" if they do not "
           "see each other"));
   EXPECT_THAT(reported({.contacts = "contacts: [{between: [grain, grain], law: none}]"}),
-              ElementsAre(HasSubstr("no entry for balls of \"grain\" against walls of \"steel\"")));
+              ElementsAre(HasSubstr("no entry for \"grain\" and \"steel\", which can meet")));
   // One ball meets nobody of its own kind, but its own image if the cell repeats.
   const SceneText one{.contacts = "contacts: [{between: [grain, steel], law: none}]"};
   EXPECT_THAT(reported(one), IsEmpty());
   EXPECT_THAT(reported({.contacts = one.contacts, .rest = "periodic: {box: [1, 1, 1], axes: [x]}"}),
-              ElementsAre(HasSubstr("no entry for balls of \"grain\" against balls of \"grain\"")));
+              ElementsAre(HasSubstr("no entry for \"grain\" and \"grain\", which can meet")));
   EXPECT_THAT(reported({.contacts = ""}), ElementsAre(StartsWith("scene.yaml:1: contacts: no entry for")));
 }
 
