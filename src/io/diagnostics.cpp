@@ -1,20 +1,12 @@
-#include "eigengrain/io/diagnostics.hpp"
+#include "diagnostics.hpp"
+
+#include "eigengrain/base/text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace eigengrain::io {
-namespace {
-
-/// 9980 -> "9,980", whatever the locale.
-std::string with_separators(std::int64_t number) {
-  std::string digits = std::to_string(number);
-  for (std::size_t left = digits.size(); left > 3; left -= 3) digits.insert(left - 3, 1, ',');
-  return digits;
-}
-
-}  // namespace
 
 void Diagnostics::add(const Place& place, std::string message, std::string_view kind) {
   ++count_;
@@ -43,7 +35,7 @@ std::vector<Mistake> Diagnostics::mistakes() const {
   result.reserve(sorted.size());
   for (Entry& entry : sorted) {
     if (entry.left_out > 0)
-      entry.mistake.message = fmt::format("and {} more like it", with_separators(entry.left_out));
+      entry.mistake.message = fmt::format("and {} more like it", grouped(entry.left_out));
     result.push_back(std::move(entry.mistake));
   }
   return result;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "eigengrain/io/diagnostics.hpp"
+#include "diagnostics.hpp"
 
 #include <deque>
 #include <string>

@@ -1,5 +1,7 @@
 #include "overrides.hpp"
 
+#include "parsed.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,30 +23,26 @@ std::vector<std::string> split_path(std::string_view path) {
   return parts;
 }
 
-Node* list_entry(Node& list, const std::string& part, std::string& problem) {
+Parsed<Node*> list_entry(Node& list, const std::string& part) {
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-  if (error == std::errc() && end == part.data() + part.size() && index < list.children.size())
-    return &list.children[index];
   const std::size_t count = list.children.size();
-  problem = count == 0
-                ? fmt::format("\"{}\" is an entry of a list that has none", part)
-                : fmt::format("\"{}\" is no entry of the list; its {} entries are numbered from 0 to {}",
-                              part, count, count - 1);
-  return nullptr;
+  if (error == std::errc() && end == part.data() + part.size() && index < count)
+    return {.value = &list.children[index]};
+  if (count == 0) return {.problem = fmt::format("\"{}\" is an entry of a list that has none", part)};
+  return {.problem = fmt::format("\"{}\" is no entry of the list; its {} entries are numbered from 0 to {}",
+                                 part, count, count - 1)};
 }
 
-/// The child that a part of the path names, made if it does not exist; nullptr with a problem if it cannot.
-Node* descend(Node& node, const std::string& part, const std::string& file, std::string& problem) {
-  if (node.kind == Node::Kind::list) return list_entry(node, part, problem);
-  if (node.kind == Node::Kind::scalar) {
-    problem = fmt::format("what stands before \"{}\" is a single value and has no keys", part);
-    return nullptr;
-  }
+/// The child that a part of the path names, made if it does not exist.
+Parsed<Node*> descend(Node& node, const std::string& part, const std::string& file) {
+  if (node.kind == Node::Kind::list) return list_entry(node, part);
+  if (node.kind == Node::Kind::scalar)
+    return {.problem = fmt::format("what stands before \"{}\" is a single value and has no keys", part)};
   if (node.kind == Node::Kind::null) node.kind = Node::Kind::map;
-  if (Node* child = node.find(part)) return child;
+  if (Node* child = node.find(part)) return {.value = child};
   node.children.push_back({.key = part, .file = &file, .children = {}});
-  return &node.children.back();
+  return {.value = &node.children.back()};
 }
 
 /// Lines within the text of an override mean nothing.
@@ -66,10 +64,10 @@ void apply(const std::string& text, const std::string& file, Node& root, Diagnos
   if (of_value.any()) return;
 
   Node* target = &root;
-  std::string problem;
   for (const std::string& part : parts) {
-    target = descend(*target, part, file, problem);
-    if (target == nullptr) return diagnostics.add({file, 0}, problem);
+    const auto [child, problem] = descend(*target, part, file);
+    if (!child) return diagnostics.add({file, 0}, problem);
+    target = *child;
   }
   clear_lines(value);
   value.key = target->key;

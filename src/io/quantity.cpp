@@ -1,21 +1,24 @@
-#include "eigengrain/io/quantity.hpp"
+#include "quantity.hpp"
 
 #include "eigengrain/base/assert.hpp"
-#include "eigengrain/io/units.hpp"
+
+#include "units.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <limits>
+#include <optional>
+#include <string>
 #include <system_error>
 
 namespace eigengrain::io {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::string_view out_of_reach = "is too large or too small for a number";
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";
@@ -45,75 +48,57 @@ std::optional<double> shifted(std::string_view digits, int decimal) {
   return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
-QuantityResult problem(std::string text) {
-  return {std::nullopt, std::move(text)};
-}
-
-struct Number {
-  double value = 0;
-  std::string_view digits;  ///< its own text
-  std::string_view rest;    ///< what stands behind it
-  std::string problem;
-};
-
-Number leading_number(std::string_view text, std::string_view wanted_unit) {
-  std::string_view digits = text;
-  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
-  Number number;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number.value);
-  const auto length = static_cast<std::size_t>(end - digits.data());
-  number.digits = digits.substr(0, length);
-  number.rest = digits.substr(length);
-  if (error == std::errc::result_out_of_range)
-    number.problem = fmt::format("\"{}\" is too large or too small for a number", text);
-  else if (error != std::errc())
-    number.problem = fmt::format("\"{}\" is not a number; write e.g. {}", text, written(1, wanted_unit));
-  else if (!std::isfinite(number.value))
-    number.problem = fmt::format("\"{}\" is not a finite number", text);
-  else if (number.rest.starts_with(','))
-    number.problem =
-        fmt::format("\"{}\" has a comma; write a decimal point and no thousands separator", text);
-  return number;
-}
-
 }  // namespace
 
-QuantityResult read_quantity(std::string_view untrimmed, std::string_view wanted_unit) {
-  const UnitResult wanted = parse_unit(wanted_unit);
-  EIGENGRAIN_ASSERT(wanted.problem.empty(), wanted_unit, wanted.problem);
-  const std::string_view text = trimmed(untrimmed);
-  if (text.empty()) return problem(fmt::format("empty; write e.g. {}", written(1, wanted_unit)));
-  const Number number = leading_number(text, wanted_unit);
-  if (!number.problem.empty()) return problem(number.problem);
-  const std::string_view unit_text = trimmed(number.rest);
-  if (unit_text.empty()) return {number.value, {}};
-
-  const UnitResult given = parse_unit(unit_text);
-  if (!given.problem.empty()) return problem(fmt::format("\"{}\": {}", text, given.problem));
-  if (!compatible(given.unit.dimension, wanted.unit.dimension))
-    return problem(fmt::format("\"{}\" is {}; {} is wanted, e.g. {}", text,
-                               dimension_name(given.unit.dimension), dimension_name(wanted.unit.dimension),
-                               written(number.value, wanted_unit)));
-  const double value = shifted(number.digits, given.unit.decimal).value_or(infinity) * given.unit.factor;
-  if (!std::isfinite(value))
-    return problem(fmt::format("\"{}\" is too large or too small for a number", text));
-  return {value, {}};
+Parsed<LeadingNumber> read_leading_number(std::string_view text, std::string_view hint) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) return {.problem = std::string(out_of_reach)};
+  if (error != std::errc()) return {.problem = fmt::format("is not a number; {}", hint)};
+  if (!std::isfinite(value)) return {.problem = "is not a finite number"};
+  const auto length = static_cast<std::size_t>(end - text.data());
+  return {.value = LeadingNumber{value, text.substr(0, length), text.substr(length)}};
 }
 
-IntegerResult read_integer(std::string_view untrimmed) {
+Parsed<double> read_quantity(std::string_view untrimmed, std::string_view wanted_unit) {
+  const Parsed<Unit> wanted = parse_unit(wanted_unit);
+  EIGENGRAIN_ASSERT(wanted.value.has_value(), wanted_unit, wanted.problem);
   const std::string_view text = trimmed(untrimmed);
-  const std::string wanted = fmt::format("\"{}\" is not a whole number; write e.g. \"10000\"", text);
-  const QuantityResult number = read_quantity(text, "");
-  if (!number.value) return {std::nullopt, wanted};
+  const std::string hint = "write e.g. " + written(1, wanted_unit);
+  if (text.empty()) return {.problem = "empty; " + hint};
+  const auto [number, problem] = read_leading_number(text, hint);
+  if (!number) return {.problem = fmt::format("\"{}\" {}", text, problem)};
+  if (number->rest.starts_with(','))
+    return {.problem =
+                fmt::format("\"{}\" has a comma; write a decimal point and no thousands separator", text)};
+  const std::string_view unit_text = trimmed(number->rest);
+  if (unit_text.empty()) return {.value = number->value};
+
+  const auto [unit, unit_problem] = parse_unit(unit_text);
+  if (!unit) return {.problem = fmt::format("\"{}\": {}", text, unit_problem)};
+  if (unit->dimension != wanted.value->dimension)
+    return {.problem =
+                fmt::format("\"{}\" is {}; {} is wanted, e.g. {}", text, dimension_name(unit->dimension),
+                            dimension_name(wanted.value->dimension), written(number->value, wanted_unit))};
+  const double value = shifted(number->digits, unit->decimal).value_or(infinity) * unit->factor;
+  if (!std::isfinite(value)) return {.problem = fmt::format("\"{}\" {}", text, out_of_reach)};
+  return {.value = value};
+}
+
+Parsed<std::int64_t> read_integer(std::string_view untrimmed) {
+  const std::string_view text = trimmed(untrimmed);
+  const std::optional<double> number = read_quantity(text, "").value;
+  if (!number || std::trunc(*number) != *number)
+    return {.problem = fmt::format("\"{}\" is not a whole number; write e.g. \"10000\"", text)};
   std::int64_t exact = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), exact);
-  if (error == std::errc() && end == text.data() + text.size()) return {exact, {}};
+  if (error == std::errc() && end == text.data() + text.size()) return {.value = exact};
   // Also 1e6, as far as a double holds every whole number.
   constexpr double largest = 9007199254740992.0;  // 2^53
-  if (std::trunc(*number.value) != *number.value) return {std::nullopt, wanted};
-  if (std::abs(*number.value) > largest)
-    return {std::nullopt, fmt::format("\"{}\" is too large for a whole number", text)};
-  return {static_cast<std::int64_t>(*number.value), {}};
+  if (std::abs(*number) > largest)
+    return {.problem = fmt::format("\"{}\" is too large for a whole number", text)};
+  return {.value = static_cast<std::int64_t>(*number)};
 }
 
 }  // namespace eigengrain::io

@@ -1,5 +1,4 @@
-#include "eigengrain/io/packing_file.hpp"
-
+#include "packing_reader.hpp"
 #include "scene_draft.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +18,6 @@ struct BallKind {
 model::FixedComponents read_fixed(const Section& section) {
   static constexpr std::array<std::string_view, 6> components{"x", "y", "z", "wx", "wy", "wz"};
   model::FixedComponents fixed;
-  if (!section.has("fix")) return fixed;
   for (const std::string& word : section.texts("fix").value_or(std::vector<std::string>())) {
     if (word == "all") return model::FixedComponents(63);
     for (int k = 0; k < 6; ++k)

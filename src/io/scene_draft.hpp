@@ -1,13 +1,12 @@
 #pragma once
 
-#include "eigengrain/io/diagnostics.hpp"
 #include "eigengrain/model/scene.hpp"
 
+#include "diagnostics.hpp"
 #include "section.hpp"
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 #include <vector>
 

@@ -1,11 +1,10 @@
 #include "eigengrain/io/scene_reader.hpp"
 
-#include "eigengrain/io/packing_file.hpp"
-
 #include "document.hpp"
 #include "overrides.hpp"
 #include "scene_draft.hpp"
 #include "section.hpp"
+#include "text_file.hpp"
 
 #include <fmt/format.h>
 
@@ -61,9 +60,9 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
 }
 
 model::Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  const FileText content = read_text_file(file);
-  if (!content.problem.empty()) throw InputError(content.problem);
-  return read_scene_text(content.text, file.parent_path(), file.string(), overrides);
+  const auto [text, problem] = read_text_file(file);
+  if (!text) throw InputError(problem);
+  return read_scene_text(*text, file.parent_path(), file.string(), overrides);
 }
 
 }  // namespace eigengrain::io

@@ -1,15 +1,12 @@
 #include "eigengrain/io/schema.hpp"
 
 #include "eigengrain/contact/law_table.hpp"
-#include "eigengrain/io/units.hpp"
+
+#include "units.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <tuple>
-#include <utility>
 
 namespace eigengrain::io {
 namespace {
@@ -251,20 +248,6 @@ std::vector<KeyDescription> all_keys() {
   return keys;
 }
 
-using SectionIndex =
-    std::map<std::pair<std::string, std::string>, std::vector<const KeyDescription*>, std::less<>>;
-
-SectionIndex index_sections() {
-  std::vector<std::string> laws = law_names();
-  laws.emplace_back();  // no law given: all keys
-  SectionIndex index;
-  for (const KeyDescription& key : scene_schema())
-    for (const std::string& law : laws)
-      if (law.empty() || key.law.empty() || key.law == law)
-        index[{std::string(key.section()), law}].push_back(&key);
-  return index;
-}
-
 std::string in_code(std::string_view text) {
   return text.empty() ? std::string() : fmt::format("`{}`", text);
 }
@@ -358,9 +341,11 @@ const std::vector<KeyDescription>& scene_schema() {
   return keys;
 }
 
-const std::vector<const KeyDescription*>& section_keys(std::string_view section, std::string_view law) {
-  static const SectionIndex index = index_sections();
-  return index.at({std::string(section), std::string(law)});
+std::vector<const KeyDescription*> section_keys(std::string_view section, std::string_view law) {
+  std::vector<const KeyDescription*> keys;
+  for (const KeyDescription& key : scene_schema())
+    if (key.section() == section && (law.empty() || key.law.empty() || key.law == law)) keys.push_back(&key);
+  return keys;
 }
 
 std::string schema_markdown() {
@@ -385,10 +370,8 @@ at once. `--set key=value` on the command line acts as if the file said so: `--s
   text += laws_markdown();
   text += "\n## Units\n\n";
   text +=
-      "A plain number is in SI units, angles in rad. A quantity may carry its unit instead: `5 mm`, `48 "
-      "GPa`,\n"
-      "`2.5 g/cm3`, `1e5 N/m`, `m s-2`, `kg*m^-3`; a unit of another dimension is an error. µ is the same as "
-      "u.\n\n";
+      "A plain number is in SI units. A quantity may carry its unit instead: `5 mm`, `48 GPa`, `2.5 g/cm3`,\n"
+      "`1e5 N/m`, `m s-2`, `kg*m^-3`; a unit of another dimension is an error. µ is the same as u.\n\n";
   return text + units_markdown();
 }
 

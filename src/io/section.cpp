@@ -1,25 +1,32 @@
 #include "section.hpp"
 
 #include "eigengrain/base/assert.hpp"
-#include "eigengrain/io/quantity.hpp"
 #include "eigengrain/io/suggest.hpp"
+
+#include "quantity.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <span>
+#include <map>
 #include <utility>
 
 namespace eigengrain::io {
 namespace {
 
-/// The default of a key as a node, so that defaults are read the way the scene is.
-Node fallback_node(const KeyDescription& key) {
-  static const std::string file = "default";
-  Diagnostics diagnostics;
-  Node node = parse_yaml(key.fallback, file, diagnostics);
-  EIGENGRAIN_ASSERT(!diagnostics.any(), key.path, key.fallback);
-  return node;
+/// The default of a key as a node, so that defaults are read the way the scene is; nullptr if there is none.
+const Node* default_node(const KeyDescription& key) {
+  static const std::map<std::string_view, Node> nodes = [] {
+    static const std::string file = "default";
+    Diagnostics diagnostics;
+    std::map<std::string_view, Node> parsed;
+    for (const KeyDescription& each : scene_schema())
+      if (!each.fallback.empty())
+        parsed.try_emplace(each.fallback, parse_yaml(each.fallback, file, diagnostics));
+    EIGENGRAIN_ASSERT(!diagnostics.any());
+    return parsed;
+  }();
+  return key.fallback.empty() ? nullptr : &nodes.at(key.fallback);
 }
 
 std::string wanted(const KeyDescription& key) {
@@ -50,7 +57,7 @@ Section::Section(const Node& node, std::string path, std::string_view pattern, D
       path_(std::move(path)),
       pattern_(pattern),
       law_(law),
-      keys_(&section_keys(pattern, law)),
+      keys_(section_keys(pattern, law)),
       diagnostics_(&diagnostics) {}
 
 Section Section::with_law(std::string_view law) const {
@@ -60,18 +67,18 @@ Section Section::with_law(std::string_view law) const {
 void Section::check_keys() const {
   for (const Node& child : node_->children) {
     const bool known =
-        std::any_of(keys_->begin(), keys_->end(), [&](const auto* key) { return key->name() == child.key; });
+        std::any_of(keys_.begin(), keys_.end(), [&](const auto* key) { return key->name() == child.key; });
     if (!known) report_unknown_key(child);
   }
   // Without its law it is open what a contact needs.
-  for (const KeyDescription* key : *keys_)
+  for (const KeyDescription* key : keys_)
     if (key->required && (key->law.empty() || !law_.empty()) && !has(key->name()))
       report_missing(key->name());
 }
 
 void Section::report_unknown_key(const Node& child) const {
   std::vector<std::string> names;
-  for (const KeyDescription* key : *keys_) names.emplace_back(key->name());
+  for (const KeyDescription* key : keys_) names.emplace_back(key->name());
   const std::string guess = did_you_mean(child.key, names);
   diagnostics_->add(child.place(), fmt::format("{}: unknown key{} ({})", path_of(child.key), guess, takes()),
                     fmt::format("{}: unknown key", pattern_));
@@ -79,7 +86,7 @@ void Section::report_unknown_key(const Node& child) const {
 
 std::string Section::takes() const {
   std::string names;
-  for (const KeyDescription* key : *keys_) {
+  for (const KeyDescription* key : keys_) {
     if (!law_.empty() && key->law.empty()) continue;  // what the user looks for is a parameter of the law
     names += fmt::format("{}{}", names.empty() ? "" : ", ", key->name());
   }
@@ -90,17 +97,14 @@ std::string Section::takes() const {
 }
 
 std::optional<double> Section::quantity(std::string_view key) const {
-  const KeyDescription& description = describe(key);
-  if (const Node* node = value(key, Node::Kind::scalar)) return read_number(*node, path_of(key), description);
-  if (has(key) || description.fallback.empty()) return std::nullopt;
-  return read_quantity(description.fallback, description.unit).value;
+  const Node* node = value(key, Node::Kind::scalar);
+  return node != nullptr ? read_number(*node, path_of(key), describe(key)) : std::nullopt;
 }
 
 std::optional<Vec3> Section::vector(std::string_view key) const {
   const KeyDescription& description = describe(key);
-  const Node fallback = has(key) || description.fallback.empty() ? Node() : fallback_node(description);
-  const Node* node = has(key) ? value(key, Node::Kind::list) : &fallback;
-  if (node == nullptr || node->kind == Node::Kind::null) return std::nullopt;
+  const Node* node = value(key, Node::Kind::list);
+  if (node == nullptr) return std::nullopt;
   if (node->children.size() != 3) {
     report(key,
            fmt::format("{} values; three are wanted, e.g. {}", node->children.size(), description.example));
@@ -120,53 +124,45 @@ std::optional<Vec3> Section::vector(std::string_view key) const {
 std::optional<std::int64_t> Section::integer(std::string_view key) const {
   const Node* node = value(key, Node::Kind::scalar);
   if (node == nullptr) return std::nullopt;
-  const IntegerResult number = read_integer(node->text);
-  const KeyDescription& description = describe(key);
-  if (!number.value) {
-    report(key, number.problem);
-  } else if (!description.range.contains(static_cast<double>(*number.value))) {
-    report(key, fmt::format("{}; a whole number {} is wanted", *number.value, description.range.text()));
-  } else {
-    return *number.value;
-  }
+  const auto [number, problem] = read_integer(node->text);
+  const Range& range = describe(key).range;
+  if (!number)
+    report(key, problem);
+  else if (!range.contains(static_cast<double>(*number)))
+    report(key, fmt::format("{}; a whole number {} is wanted", *number, range.text()));
+  else
+    return number;
   return std::nullopt;
 }
 
 std::optional<bool> Section::flag(std::string_view key) const {
-  const KeyDescription& description = describe(key);
   const Node* node = value(key, Node::Kind::scalar);
-  if (node == nullptr && (has(key) || description.fallback.empty())) return std::nullopt;
-  const std::string& text = node != nullptr ? node->text : description.fallback;
-  if (text == "true") return true;
-  if (text == "false") return false;
-  report(key, fmt::format("\"{}\"; write true or false", text));
+  if (node == nullptr) return std::nullopt;
+  if (node->text == "true") return true;
+  if (node->text == "false") return false;
+  report(key, fmt::format("\"{}\"; write true or false", node->text));
   return std::nullopt;
 }
 
 std::optional<std::string> Section::text(std::string_view key) const {
-  const KeyDescription& description = describe(key);
-  if (const Node* node = value(key, Node::Kind::scalar)) return read_word(*node, path_of(key), description);
-  if (has(key) || description.fallback.empty()) return std::nullopt;
-  return description.fallback;
+  const Node* node = value(key, Node::Kind::scalar);
+  return node != nullptr ? read_word(*node, path_of(key), describe(key)) : std::nullopt;
 }
 
 std::optional<std::vector<std::string>> Section::texts(std::string_view key) const {
-  const KeyDescription& description = describe(key);
-  const Node* node = node_->find(key);
-  if (node == nullptr && description.fallback.empty()) return std::nullopt;
-  const Node fallback = node == nullptr ? fallback_node(description) : Node();
-  if (node == nullptr) node = &fallback;
-  const bool single = node->kind == Node::Kind::scalar;
-  if (!single && node != &fallback) node = value(key, Node::Kind::list);
-  if (node == nullptr) return std::nullopt;
-
-  const std::span<const Node> entries = single ? std::span(node, 1) : std::span(node->children);
-  std::vector<std::string> result;
-  for (std::size_t k = 0; k < entries.size(); ++k) {
-    const std::string path = single ? path_of(key) : fmt::format("{}[{}]", path_of(key), k);
-    if (const auto word = read_word(entries[k], path, description)) result.push_back(*word);
+  const Node* given = node_->find(key);
+  if (given != nullptr && given->kind == Node::Kind::scalar) {
+    const auto word = text(key);
+    return word ? std::optional(std::vector{*word}) : std::nullopt;
   }
-  return result.size() == entries.size() ? std::optional(result) : std::nullopt;
+  const Node* list = value(key, Node::Kind::list);
+  if (list == nullptr) return std::nullopt;
+  std::vector<std::string> result;
+  for (std::size_t k = 0; k < list->children.size(); ++k) {
+    const auto word = read_word(list->children[k], fmt::format("{}[{}]", path_of(key), k), describe(key));
+    if (word) result.push_back(*word);
+  }
+  return result.size() == list->children.size() ? std::optional(result) : std::nullopt;
 }
 
 std::optional<Section> Section::section(std::string_view key) const {
@@ -200,15 +196,15 @@ std::optional<double> Section::read_number(const Node& node, const std::string& 
     report_at(node, path, fmt::format("{} stands where a number is wanted", kind_name(node.kind)));
     return std::nullopt;
   }
-  const QuantityResult number = read_quantity(node.text, key.unit);
-  if (!number.value) {
-    report_at(node, path, number.problem);
-  } else if (!key.range.contains(*number.value)) {
+  const auto [number, problem] = read_quantity(node.text, key.unit);
+  if (!number) {
+    report_at(node, path, problem);
+  } else if (!key.range.contains(*number)) {
     report_at(node, path,
               fmt::format("\"{}\" is out of range; a value {} is wanted, e.g. {}", node.text,
                           key.range.text(), example_line(key)));
   } else {
-    return number.value;
+    return number;
   }
   return std::nullopt;
 }
@@ -229,11 +225,12 @@ std::optional<std::string> Section::read_word(const Node& node, const std::strin
   return std::nullopt;
 }
 
-/// The node of a key if it is of the kind wanted; what stands there otherwise is reported.
+/// The node of a key, or its default, if it is of the kind wanted; what stands there otherwise is reported.
 const Node* Section::value(std::string_view key, Node::Kind kind) const {
-  const Node* node = node_->find(key);
-  if (node == nullptr || node->kind == kind) return node;
   const KeyDescription& description = describe(key);
+  const Node* node = node_->find(key);
+  if (node == nullptr) return default_node(description);
+  if (node->kind == kind) return node;
   if (node->kind == Node::Kind::null)
     report(key, fmt::format("empty; give it a value, e.g. {}, or remove the key", example_line(description)));
   else
@@ -272,8 +269,8 @@ void Section::report_at(const Node& node, std::string_view path, std::string_vie
 
 const KeyDescription& Section::describe(std::string_view key) const {
   const auto found =
-      std::find_if(keys_->begin(), keys_->end(), [&](const auto* k) { return k->name() == key; });
-  EIGENGRAIN_ASSERT(found != keys_->end(), pattern_, key);
+      std::find_if(keys_.begin(), keys_.end(), [&](const auto* k) { return k->name() == key; });
+  EIGENGRAIN_ASSERT(found != keys_.end(), pattern_, key);
   return **found;
 }
 

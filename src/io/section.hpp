@@ -68,7 +68,7 @@ class Section {
   std::string path_;
   std::string pattern_;
   std::string_view law_;
-  const std::vector<const KeyDescription*>* keys_;
+  std::vector<const KeyDescription*> keys_;
   Diagnostics* diagnostics_;
 };
 

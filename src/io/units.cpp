@@ -1,4 +1,4 @@
-#include "eigengrain/io/units.hpp"
+#include "units.hpp"
 
 #include "eigengrain/io/suggest.hpp"
 
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -16,64 +16,47 @@ namespace {
 
 struct UnitRow {
   std::string_view symbol;
-  Dimension dimension;
-  double factor;
-  int decimal;
+  Unit unit;
   std::string_view prefixes;  ///< letters of `prefix_table` that make sense in front of it
   std::string_view description;
 };
 
 constexpr std::array unit_table{
-    UnitRow{"m", {1, 0, 0, 0}, 1, 0, "numcdk", "metre"},
-    UnitRow{"g", {0, 1, 0, 0}, 1, -3, "numkM", "gram; the SI unit is the kg"},
-    UnitRow{"t", {0, 1, 0, 0}, 1, 3, "", "tonne, 1000 kg"},
-    UnitRow{"s", {0, 0, 1, 0}, 1, 0, "num", "second"},
-    UnitRow{"min", {0, 0, 1, 0}, 60, 0, "", "minute"},
-    UnitRow{"h", {0, 0, 1, 0}, 3600, 0, "", "hour"},
-    UnitRow{"N", {1, 1, -2, 0}, 1, 0, "numkMG", "newton"},
-    UnitRow{"Pa", {-1, 1, -2, 0}, 1, 0, "numkMG", "pascal"},
-    UnitRow{"bar", {-1, 1, -2, 0}, 1, 5, "m", "bar, 100 kPa"},
-    UnitRow{"J", {2, 1, -2, 0}, 1, 0, "numkMG", "joule"},
-    UnitRow{"W", {2, 1, -3, 0}, 1, 0, "numkMG", "watt"},
-    UnitRow{"Hz", {0, 0, -1, 0}, 1, 0, "mkMG", "hertz"},
-    UnitRow{"rad", {0, 0, 0, 1}, 1, 0, "num", "radian"},
-    UnitRow{"deg", {0, 0, 0, 1}, std::numbers::pi / 180, 0, "", "degree"},
+    UnitRow{"m", {{1, 0, 0}, 1, 0}, "numcdk", "metre"},
+    UnitRow{"g", {{0, 1, 0}, 1, -3}, "numkM", "gram; the SI unit is the kg"},
+    UnitRow{"t", {{0, 1, 0}, 1, 3}, "", "tonne, 1000 kg"},
+    UnitRow{"s", {{0, 0, 1}, 1, 0}, "num", "second"},
+    UnitRow{"min", {{0, 0, 1}, 60, 0}, "", "minute"},
+    UnitRow{"h", {{0, 0, 1}, 3600, 0}, "", "hour"},
+    UnitRow{"N", {{1, 1, -2}, 1, 0}, "numkMG", "newton"},
+    UnitRow{"Pa", {{-1, 1, -2}, 1, 0}, "numkMG", "pascal"},
 };
 
 constexpr std::array<std::pair<char, int>, 8> prefix_table{
     {{'n', -9}, {'u', -6}, {'m', -3}, {'c', -2}, {'d', -1}, {'k', 3}, {'M', 6}, {'G', 9}}};
 
-constexpr std::array<std::pair<Dimension, std::string_view>, 20> named_dimensions{{
-    {{0, 0, 0, 0}, "a pure number"},
-    {{1, 0, 0, 0}, "a length"},
-    {{2, 0, 0, 0}, "an area"},
-    {{3, 0, 0, 0}, "a volume"},
-    {{0, 1, 0, 0}, "a mass"},
-    {{0, 0, 1, 0}, "a time"},
-    {{0, 0, 0, 1}, "an angle"},
-    {{0, 0, -1, 0}, "a frequency"},
-    {{0, 0, -1, 1}, "an angular velocity"},
-    {{1, 0, -1, 0}, "a velocity"},
-    {{1, 0, -2, 0}, "an acceleration"},
-    {{-3, 1, 0, 0}, "a density"},
-    {{2, 1, 0, 0}, "a moment of inertia"},
-    {{1, 1, -2, 0}, "a force"},
-    {{0, 1, -2, 0}, "a stiffness"},
-    {{0, 1, -1, 0}, "a damping coefficient"},
-    {{-1, 1, -2, 0}, "a pressure"},
-    {{2, 1, -2, 0}, "an energy or a moment"},
-    {{2, 1, -3, 0}, "a power"},
-    {{-3, 1, -2, 0}, "a stiffness per area"},
+constexpr std::array<std::pair<Dimension, std::string_view>, 12> named_dimensions{{
+    {{0, 0, 0}, "a pure number"},
+    {{1, 0, 0}, "a length"},
+    {{2, 0, 0}, "an area"},
+    {{3, 0, 0}, "a volume"},
+    {{0, 1, 0}, "a mass"},
+    {{0, 0, 1}, "a time"},
+    {{1, 0, -1}, "a velocity"},
+    {{1, 0, -2}, "an acceleration"},
+    {{-3, 1, 0}, "a density"},
+    {{1, 1, -2}, "a force"},
+    {{0, 1, -2}, "a stiffness"},
+    {{-1, 1, -2}, "a pressure"},
 }};
 
 /// The ways of writing the same thing that need more than ASCII, in ASCII.
 std::string in_ascii(std::string_view text) {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 17> spellings{{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 16> spellings{{
       {"µ", "u"},
       {"μ", "u"},
       {"·", "*"},
       {"⋅", "*"},
-      {"°", "deg"},
       {"⁻", "-"},
       {"⁰", "0"},
       {"¹", "1"},
@@ -108,19 +91,15 @@ std::vector<std::string> all_symbols() {
   return symbols;
 }
 
-/// A symbol with its prefix. Whole symbols first, so that "min" is no milli-inch.
-const UnitRow* find_symbol(std::string_view symbol, int& prefix_decimal) {
-  prefix_decimal = 0;
+/// The unit of a symbol, prefix included. Whole symbols first, so that "min" is no milli-inch.
+std::optional<Unit> find_unit(std::string_view symbol) {
   for (const UnitRow& row : unit_table)
-    if (row.symbol == symbol) return &row;
-  if (symbol.empty()) return nullptr;
-  for (const UnitRow& row : unit_table) {
-    if (row.symbol != symbol.substr(1) || row.prefixes.find(symbol[0]) == std::string_view::npos) continue;
+    if (row.symbol == symbol) return row.unit;
+  for (const UnitRow& row : unit_table)
     for (const auto& [letter, decimal] : prefix_table)
-      if (letter == symbol[0]) prefix_decimal = decimal;
-    return &row;
-  }
-  return nullptr;
+      if (row.prefixes.find(letter) != std::string_view::npos && symbol == letter + std::string(row.symbol))
+        return Unit{row.unit.dimension, row.unit.factor, row.unit.decimal + decimal};
+  return std::nullopt;
 }
 
 bool is_digit(char c) {
@@ -132,7 +111,7 @@ class UnitParser {
  public:
   explicit UnitParser(std::string_view text) : text_(in_ascii(text)), rest_(text_) {}
 
-  UnitResult parse() {
+  Parsed<Unit> parse() {
     bool divided = false;
     for (bool first = true; problem_.empty(); first = false) {
       const bool spaced = skip_blanks();
@@ -145,7 +124,8 @@ class UnitParser {
       divided = divided || operation == '/';
       if (problem_.empty()) take_factor(operation == '/' ? -1 : 1);
     }
-    return {unit_, problem_};
+    if (!problem_.empty()) return {.problem = problem_};
+    return {.value = unit_};
   }
 
  private:
@@ -177,11 +157,10 @@ class UnitParser {
     const std::string_view symbol = rest_.substr(0, length);
     rest_.remove_prefix(length);
     if (symbol.empty()) return take_one();
-    int prefix_decimal = 0;
-    const UnitRow* row = find_symbol(symbol, prefix_decimal);
-    if (row == nullptr)
+    const std::optional<Unit> unit = find_unit(symbol);
+    if (!unit)
       return fail(fmt::format("\"{}\" is no unit known here{}", symbol, did_you_mean(symbol, all_symbols())));
-    multiply(*row, prefix_decimal, sign * take_power());
+    multiply(*unit, sign * take_power());
   }
 
   /// The 1 of "1/s".
@@ -209,14 +188,13 @@ class UnitParser {
     return negative ? -power : power;
   }
 
-  void multiply(const UnitRow& row, int prefix_decimal, int power) {
-    unit_.dimension.length += power * row.dimension.length;
-    unit_.dimension.mass += power * row.dimension.mass;
-    unit_.dimension.time += power * row.dimension.time;
-    unit_.dimension.angle += power * row.dimension.angle;
-    unit_.decimal += power * (row.decimal + prefix_decimal);
+  void multiply(const Unit& by, int power) {
+    unit_.dimension.length += power * by.dimension.length;
+    unit_.dimension.mass += power * by.dimension.mass;
+    unit_.dimension.time += power * by.dimension.time;
+    unit_.decimal += power * by.decimal;
     for (int k = 0; k < std::abs(power); ++k)
-      unit_.factor = power > 0 ? unit_.factor * row.factor : unit_.factor / row.factor;
+      unit_.factor = power > 0 ? unit_.factor * by.factor : unit_.factor / by.factor;
   }
 
   std::string text_;
@@ -227,8 +205,8 @@ class UnitParser {
 
 std::string base_units(const Dimension& d) {
   std::string text;
-  for (const auto& [symbol, power] : {std::pair("kg", d.mass), std::pair("m", d.length),
-                                      std::pair("s", d.time), std::pair("rad", d.angle)}) {
+  for (const auto& [symbol, power] :
+       {std::pair("kg", d.mass), std::pair("m", d.length), std::pair("s", d.time)}) {
     if (power == 0) continue;
     if (!text.empty()) text += ' ';
     text += symbol;
@@ -239,18 +217,13 @@ std::string base_units(const Dimension& d) {
 
 }  // namespace
 
-bool compatible(const Dimension& a, const Dimension& b) {
-  const bool same_apart_from_angle = a.length == b.length && a.mass == b.mass && a.time == b.time;
-  return same_apart_from_angle && (a.angle == b.angle || a.mass != 0);
-}
-
 std::string dimension_name(const Dimension& dimension) {
   for (const auto& [named, name] : named_dimensions)
     if (named == dimension) return std::string(name);
   return "a quantity in " + base_units(dimension);
 }
 
-UnitResult parse_unit(std::string_view text) {
+Parsed<Unit> parse_unit(std::string_view text) {
   return UnitParser(text).parse();
 }
 

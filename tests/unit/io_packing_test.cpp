@@ -1,5 +1,4 @@
-#include "eigengrain/io/packing_file.hpp"
-
+#include "io/packing_reader.hpp"
 #include "unit/io_support.hpp"
 
 #include <gmock/gmock.h>
@@ -40,15 +39,16 @@ TEST(Packing, ReportsEachBadRowWithLineAndValue) {
   EXPECT_EQ(packing.line, std::vector<std::int32_t>{12});
   EXPECT_THAT(
       texts_of(diagnostics.mistakes()),
-      ElementsAre(
-          "p.txt:1: 3 columns; four are wanted: x y z r, in m",
-          "p.txt:2: 5 columns; four are wanted: x y z r, in m",
-          HasSubstr("p.txt:3: y = \"zero\" is not a number"), HasSubstr("p.txt:4: r = \"1x\" is not"),
-          "p.txt:5: x = \"nan\" is not a finite number", "p.txt:6: z = \"-inf\" is not a finite number",
-          "p.txt:7: radius 0 m is not positive", "p.txt:8: radius -2 m is not positive",
-          "p.txt:9: r = \"1e999\" is too large or too small for a number",
-          HasSubstr("p.txt:10: x = \"0,0,0,1\" is not a number; separate columns by blanks"),
-          HasSubstr("p.txt:11: z = \"5mm\" is not a number; a packing file holds plain numbers in m")));
+      ElementsAre("p.txt:1: 3 columns; four are wanted: x y z r, in m",
+                  "p.txt:2: 5 columns; four are wanted: x y z r, in m",
+                  HasSubstr("p.txt:3: y = \"zero\" is not a number"), HasSubstr("p.txt:4: r = \"1x\" is not"),
+                  "p.txt:5: x = \"nan\" is not a finite number",
+                  "p.txt:6: z = \"-inf\" is not a finite number", "p.txt:7: radius 0 m is not positive",
+                  "p.txt:8: radius -2 m is not positive",
+                  "p.txt:9: r = \"1e999\" is too large or too small for a number",
+                  HasSubstr("p.txt:10: x = \"0,0,0,1\" is not a number; columns are plain numbers in m, "
+                            "separated by blanks"),
+                  HasSubstr("p.txt:11: z = \"5mm\" is not a number; columns are plain numbers in m")));
 }
 
 TEST(Packing, ReadsABigFileAndCapsItsMistakes) {
@@ -84,6 +84,19 @@ TEST(Packing, MissingFileNamesThePathAndTheNearestFile) {
       ElementsAre("scene.yaml:4: there is no file \"" + path + "\"; did you mean \"packing_10k.txt\"?",
                   testing::AllOf(HasSubstr("scene.yaml:5: there is no file"), HasSubstr("(nor a folder")),
                   HasSubstr("is a folder, not a file"), HasSubstr("holds no balls")));
+}
+
+TEST(Packing, AFileAloneThrowsItsMistakes) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_packing_file(folder.write("good.txt", "0 0 0 1\n")).radius, std::vector<double>{1});
+  const auto bad = folder.write("bad.txt", "0 0 0 1\n0 0 0 0\n0 0 0\n");
+  try {
+    read_packing_file(bad);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.mistakes().size(), 2U);
+  }
+  EXPECT_THROW(read_packing_file(folder.path() / "none.txt"), InputError);
 }
 
 }  // namespace

@@ -1,11 +1,9 @@
-#include "eigengrain/io/quantity.hpp"
-#include "eigengrain/io/units.hpp"
+#include "io/quantity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <clocale>
-#include <numbers>
 
 namespace eigengrain::io {
 namespace {
@@ -19,7 +17,6 @@ struct Written {
 };
 
 TEST(Quantity, ReadsUnitsIntoSI) {
-  constexpr double degree = std::numbers::pi / 180;
   for (const auto& [text, unit, si] : std::initializer_list<Written>{
            {"5 mm", "m", 0.005},
            {"5mm", "m", 0.005},
@@ -31,9 +28,6 @@ TEST(Quantity, ReadsUnitsIntoSI) {
            {"1 dm", "m", 0.1},
            {"-1.5 km", "m", -1500},
            {"48 GPa", "Pa", 48e9},
-           {"1.2 bar", "Pa", 1.2e5},
-           {"10 deg", "rad", 10 * degree},
-           {"90°", "rad", 90 * degree},
            {"2.5 g/cm3", "kg/m3", 2500},
            {"2.5 t/m³", "kg/m3", 2500},
            {"2500 kg*m^-3", "kg/m3", 2500},
@@ -50,11 +44,8 @@ TEST(Quantity, ReadsUnitsIntoSI) {
            {"2 min", "s", 120},
            {"1.5 h", "s", 5400},
            {"3 ms", "s", 0.003},
-           {"50 1/s", "Hz", 50},
+           {"50 1/s", "1/s", 50},
            {"50 /s", "1/s", 50},
-           {"2 J", "N m", 2},
-           {"3 W", "J/s", 3},
-           {"7 N m/rad", "N m", 7},
            {"250 mg", "kg", 2.5e-4},
            {"3 Mg", "kg", 3000},
            {"3 t", "kg", 3000},
@@ -65,7 +56,7 @@ TEST(Quantity, ReadsUnitsIntoSI) {
            {"1e-5", "s", 1e-5},
            {"-0", "m", 0},
        }) {
-    const QuantityResult result = read_quantity(text, unit);
+    const Parsed<double> result = read_quantity(text, unit);
     ASSERT_TRUE(result.value.has_value()) << text << ": " << result.problem;
     EXPECT_DOUBLE_EQ(*result.value, si) << text;
     EXPECT_EQ(result.problem, "");
@@ -89,8 +80,8 @@ TEST(Quantity, SaysWhatIsWrongAndWhatToWrite) {
            {"2500 kg", "kg/m3", R"("2500 kg" is a mass; a density is wanted, e.g. "2500 kg/m3")"},
            {"9.81 m", "m/s2", R"("9.81 m" is a length; an acceleration is wanted, e.g. "9.81 m/s2")"},
            {"0.5 N", "", R"("0.5 N" is a force; a pure number is wanted, e.g. "0.5")"},
-           {"0.5 rad", "", R"("0.5 rad" is an angle; a pure number is wanted, e.g. "0.5")"},
-           {"5 Hz", "rad/s", R"("5 Hz" is a frequency; an angular velocity is wanted)"},
+           {"10 deg", "", R"("10 deg": "deg" is no unit known here)"},
+           {"5 /s", "s", R"("5 /s" is a quantity in s-1; a time is wanted, e.g. "5 s")"},
            {"5 m2 kg s", "m", R"("5 m2 kg s" is a quantity in kg m2 s; a length is wanted, e.g. "5 m")"},
            {"5 KN", "N", R"("KN" is no unit known here; did you mean "kN"?)"},
            {"5 Kg", "kg", R"("Kg" is no unit known here; did you mean "kg"?)"},
@@ -117,10 +108,10 @@ TEST(Quantity, SaysWhatIsWrongAndWhatToWrite) {
            {"5 5", "m", R"("5 5": "5" is not a unit)"},
            {"5 m2kg", "m", R"("kg" is not expected there)"},
            {"0x10", "m", R"("x" is no unit known here)"},
-           {"5 kdeg", "rad", "\"kdeg\" is no unit known here; did you mean \"deg\"?"},
+           {"5 kmin", "s", "\"kmin\" is no unit known here; did you mean \"min\"?"},
            {"5 \xff\xfe", "m", "is no unit known here"},
        }) {
-    const QuantityResult result = read_quantity(text, unit);
+    const Parsed<double> result = read_quantity(text, unit);
     EXPECT_FALSE(result.value.has_value()) << text;
     EXPECT_THAT(result.problem, HasSubstr(problem)) << text;
   }
@@ -143,12 +134,6 @@ TEST(Integer, ReadsWholeNumbersOnly) {
   EXPECT_THAT(read_integer("").problem, HasSubstr("is not a whole number"));
   EXPECT_THAT(read_integer("1e300").problem, HasSubstr("too large"));
   EXPECT_FALSE(read_integer("nan").value.has_value());
-}
-
-TEST(Dimensions, AnglesCountOnlyWhereNoMassIsInvolved) {
-  EXPECT_TRUE(compatible(parse_unit("N m/rad").unit.dimension, parse_unit("N m").unit.dimension));
-  EXPECT_FALSE(compatible(parse_unit("rad/s").unit.dimension, parse_unit("1/s").unit.dimension));
-  EXPECT_EQ(dimension_name(parse_unit("N/m").unit.dimension), "a stiffness");
 }
 
 }  // namespace

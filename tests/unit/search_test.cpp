@@ -2,7 +2,7 @@
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/search/candidates.hpp"
 
-#include "../../src/search/pair_search.hpp"
+#include "search/pair_search.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

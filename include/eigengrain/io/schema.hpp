@@ -57,7 +57,7 @@ struct KeyDescription {
 const std::vector<KeyDescription>& scene_schema();
 
 /// The keys of one section; of a contact, those of the law given, or of every law if it is empty.
-const std::vector<const KeyDescription*>& section_keys(std::string_view section, std::string_view law = {});
+std::vector<const KeyDescription*> section_keys(std::string_view section, std::string_view law = {});
 
 /// Names of the contact laws that a scene may ask for, "none" included.
 std::vector<std::string> law_names();
