@@ -1,6 +1,7 @@
 # Compiler settings shared by every target, as two interface targets:
 #   eigengrain_flags     what every user of the headers needs too (exported)
 #   eigengrain_warnings  what only our own code is held to (not exported)
+#   eigengrain_own       both, and the rule of floating point: every target but the kernels of the product
 add_library(eigengrain_flags INTERFACE)
 target_compile_features(eigengrain_flags INTERFACE cxx_std_20)
 if(EIGENGRAIN_ASSERTIONS)
@@ -11,10 +12,7 @@ add_library(eigengrain_warnings INTERFACE)
 target_compile_options(eigengrain_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual
   -Wunused -Woverloaded-virtual -Wdouble-promotion -Wextra-semi
-  -Wno-restrict  # false alarms of GCC 12 in std::string (PR105651)
-  # One rule for fused multiply-add everywhere: only where the source asks for it, so that a result
-  # does not depend on how the compiler happened to vectorise a loop (docs/architecture.md).
-  -ffp-contract=off)
+  -Wno-restrict)  # false alarms of GCC 12 in std::string (PR105651)
 if(EIGENGRAIN_WERROR)
   target_compile_options(eigengrain_warnings INTERFACE -Werror)
 endif()
@@ -24,6 +22,11 @@ else()
   # Without our assertions Eigen's are off too: they sit in the innermost loops.
   target_compile_definitions(eigengrain_warnings INTERFACE $<$<NOT:$<CONFIG:Debug>>:EIGEN_NO_DEBUG>)
 endif()
+add_library(eigengrain_own INTERFACE)
+target_link_libraries(eigengrain_own INTERFACE eigengrain_warnings)
+# No fused multiply-add that the source does not ask for, so that a result does not depend on how the compiler
+# happened to vectorise a loop (docs/architecture.md).
+target_compile_options(eigengrain_own INTERFACE -ffp-contract=off)
 if(EIGENGRAIN_SANITIZE)
   target_compile_options(eigengrain_flags INTERFACE -fsanitize=${EIGENGRAIN_SANITIZE}
                          -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace eigengrain::cycle {
@@ -14,9 +15,11 @@ using assembly::LinearSystem;
 using contact::ContactElement;
 using contact::no_body;
 
-/// Relative error of a computed block: 6×6 sums over a body's contacts. Far below any difference that
-/// matters, and it keeps the bound on the safe side.
-constexpr double rounding = 1e-12;
+/// Bound of the relative error of a computed block eigenvalue: a sum over `contacts` positive semidefinite
+/// blocks, each of which takes some ten operations. It keeps the bound on the safe side.
+double rounding(std::int64_t contacts) {
+  return 1e-12 + 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(contacts);
+}
 
 /// Diagonal of M_i^-½ of each body, zero where the component is fixed or does not exist.
 std::vector<Vec6> scale_of_bodies(const LinearSystem& system) {
@@ -30,13 +33,23 @@ std::vector<Vec6> scale_of_bodies(const LinearSystem& system) {
 }
 
 /// mean + √5 deviation of the six eigenvalues, from trace and norm: no eigenvalue is larger (Wolkowicz and
-/// Styan, Linear Algebra Appl. 29:471, 1980).
+/// Styan, Linear Algebra Appl. 29:471, 1980). The variance of a nearly isotropic block is lost to
+/// cancellation, so what cancellation can hide is added to it.
 double eigenvalue_bound(const Mat6& s) {
+  constexpr double hidden = 64 * std::numeric_limits<double>::epsilon();
   const double mean = s.trace() / 6;
-  return mean + std::sqrt(5 * std::max(0.0, s.squaredNorm() / 6 - mean * mean));
+  const double square = s.squaredNorm() / 6;
+  return mean + std::sqrt(5 * (std::max(0.0, square - mean * mean) + hidden * square));
 }
 
+/// The larger of both; not a number if b is not one.
+double larger(double a, double b) {
+  return std::isnan(b) || b > a ? b : a;
+}
+
+/// Not a number (an overflow in the scene) proves nothing.
 double timestep_of(double lambda) {
+  if (std::isnan(lambda)) return 0.0;
   return lambda > 0 ? 2.0 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();
 }
 
@@ -94,15 +107,16 @@ double BlockBound::timestep() const {
   std::vector<double> largest_of_chunk(static_cast<std::size_t>((bodies + chunk_size - 1) / chunk_size), 0.0);
   for_chunks(bodies, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     double& largest = largest_of_chunk[chunk];
-    for (std::int64_t body = begin; body < end; ++body) {
-      const Mat6 s = block(static_cast<std::int32_t>(body));
+    for (auto body = static_cast<std::int32_t>(begin); body < end; ++body) {
+      const Mat6 s = block(body);
       // Few bodies can hold the largest eigenvalue; the others need none.
-      if (eigenvalue_bound(s) > largest) largest = std::max(largest, largest_eigenvalue(s));
+      if (!(eigenvalue_bound(s) <= largest))
+        largest = larger(largest, largest_eigenvalue(s) * (1 + rounding(std::ssize(ends_.links(body)))));
     }
   });
   double largest = 0;
-  for (const double lambda : largest_of_chunk) largest = std::max(largest, lambda);
-  return timestep_of(largest * (1.0 + rounding));
+  for (const double lambda : largest_of_chunk) largest = larger(largest, lambda);
+  return timestep_of(largest);
 }
 
 void BlockBound::sweep() {

@@ -1,6 +1,7 @@
 #include "eigengrain/petsc/session.hpp"
 
 #include "eigengrain/base/error.hpp"
+#include "eigengrain/base/parallel.hpp"
 
 #include "error.hpp"
 
@@ -8,30 +9,34 @@
 #include <fmt/format.h>
 #include <slepcsys.h>
 
-#include <array>
+#include <string_view>
 
 namespace eigengrain::petsc {
 namespace {
 
-/// OpenBLAS is reached by name: the program runs with any BLAS.
+constexpr std::string_view signal_option = "no_signal_handler";
+
+/// OpenBLAS is reached by name: the program runs with any BLAS. Its OpenMP build would set our threads too.
 void one_blas_thread() {
+  const int ours = threads();
   using SetThreads = void (*)(int);
   if (void* found = dlsym(RTLD_DEFAULT, "openblas_set_num_threads")) reinterpret_cast<SetThreads>(found)(1);
+  set_threads(ours);
 }
 
 class Session {
  public:
   Session() {
     PetscBool running = PETSC_FALSE;
-    check(SlepcInitialized(&running), "SlepcInitialized");
+    EIGENGRAIN_PETSC(SlepcInitialized(&running));
     if (running == PETSC_FALSE) {
       // Signals stay ours: PETSc's handlers would end the program instead of letting it save its state.
-      PetscOptionsSetValue(nullptr, "-no_signal_handler", "true");
-      check(SlepcInitializeNoArguments(), "SlepcInitializeNoArguments");
+      EIGENGRAIN_PETSC(PetscOptionsSetValue(nullptr, "-no_signal_handler", "true"));
+      EIGENGRAIN_PETSC(SlepcInitializeNoArguments());
       ours_ = true;
     }
     // Errors come back as codes, for check() to report, and not as a printed trace.
-    check(PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr), "PetscPushErrorHandler");
+    EIGENGRAIN_PETSC(PetscPushErrorHandler(PetscIgnoreErrorHandler, nullptr));
     one_blas_thread();
   }
   ~Session() {
@@ -54,9 +59,26 @@ void start() {
 
 void set_options(const std::string& options) {
   start();
-  if (PetscOptionsInsertString(nullptr, options.c_str()) != 0)
+  const std::size_t first = options.find_first_not_of(' ');
+  if (first == std::string::npos) return;
+  if (options[first] != '-' || PetscOptionsInsertString(nullptr, options.c_str()) != 0)
     throw InputError(
         fmt::format("--petsc \"{}\": PETSc cannot read this; write options as in \"-eps_ncv 80\"", options));
+}
+
+void require_options_used() {
+  PetscInt count = 0;
+  char** names = nullptr;
+  EIGENGRAIN_PETSC(PetscOptionsLeftGet(nullptr, &count, &names, nullptr));
+  std::string unused;
+  for (PetscInt k = 0; k < count; ++k) {
+    if (std::string_view(names[k]) == signal_option) continue;  // our own; PETSc reads it only when it starts
+    unused += fmt::format("{}-{}", unused.empty() ? "" : ", ", names[k]);
+  }
+  EIGENGRAIN_PETSC(PetscOptionsLeftRestore(nullptr, &count, &names, nullptr));
+  if (!unused.empty())
+    throw InputError(fmt::format(
+        "--petsc: nothing uses {}; the options are those of SLEPc's EPS, e.g. -eps_ncv 80", unused));
 }
 
 void check(PetscErrorCode code, const char* call) {

@@ -22,8 +22,7 @@ BlockPattern block_pattern(const Unknowns& unknowns, std::span<const contact::Co
   const auto couple = [&](std::int32_t row_body, std::int32_t column_body) {
     for (const std::int32_t row : unknowns.of(row_body))
       for (const std::int32_t column : unknowns.of(column_body))
-        if (row != Unknowns::none && column != Unknowns::none)
-          rows[static_cast<std::size_t>(row)].push_back(column);
+        if (row != Unknowns::none && column != Unknowns::none) rows[row].push_back(column);
   };
   for (const contact::ContactElement& e : elements) {
     couple(e.a, e.a);

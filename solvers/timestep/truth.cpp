@@ -24,6 +24,9 @@ using assembly::StiffnessProduct;
 /// for 10,000 balls) and cost orthogonalisation, which outweighs the products.
 constexpr PetscInt krylov_vectors = 16;
 
+/// With a residual r, λ errs by some r² of itself: far below what an estimate is judged by.
+constexpr double largest_residual = 1e-8;
+
 PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
   StiffnessProduct* product = nullptr;
   PetscCall(MatShellGetContext(matrix, &product));
@@ -64,15 +67,16 @@ petsc::Eigensolver largest_eigenvalue_solver(Mat matrix, Vec start, const TruthO
   petsc::Eigensolver solver;
   EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
   EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), matrix, nullptr));
-  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_HEP));
   EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
-  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
   EIGENGRAIN_PETSC(EPSSetConvergenceTest(solver.get(), EPS_CONV_REL));
   EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), 1, krylov_vectors, PETSC_DEFAULT));
   const auto restarts = static_cast<PetscInt>(2 * options.max_products / krylov_vectors) + 1;
   EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), options.tolerance, restarts));
   EIGENGRAIN_PETSC(EPSSetInitialSpace(solver.get(), 1, &start));
   EIGENGRAIN_PETSC(EPSSetFromOptions(solver.get()));
+  // What is asked for is no option.
+  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_HEP));
+  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
   return solver;
 }
 
@@ -87,6 +91,20 @@ double relative_residual(Mat matrix, Vec x, double lambda) {
   EIGENGRAIN_PETSC(VecNorm(r.get(), NORM_2, &residual));
   EIGENGRAIN_PETSC(VecNorm(x, NORM_2, &norm));
   return residual / (lambda * norm);
+}
+
+/// A loose eigenpair must not pass for the truth.
+void require_eigenpair(const Truth& truth) {
+  if (!std::isfinite(truth.lambda_max) || truth.lambda_max < 0)
+    throw SolverError(
+        fmt::format("the largest eigenvalue came out as {}; stiffnesses and masses of the scene are "
+                    "too far apart for double precision",
+                    truth.lambda_max));
+  if (!(truth.residual <= largest_residual))
+    throw SolverError(
+        fmt::format("the largest eigenvalue has a residual of {:.1e}, and {:.0e} is wanted; ask the "
+                    "eigensolver for more (-eps_tol)",
+                    truth.residual, largest_residual));
 }
 
 }  // namespace
@@ -113,8 +131,9 @@ Truth critical_timestep(const assembly::LinearSystem& system, double local_dampi
                     "ask for less, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
                     options.tolerance, product.products()));
   EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &truth.lambda_max, nullptr, x.get(), nullptr));
-  if (truth.lambda_max <= 0) return truth;  // contacts act, but only along components that are fixed
+  if (truth.lambda_max == 0) return truth;  // contacts act, but only along components that are fixed
   truth.residual = relative_residual(matrix.get(), x.get(), truth.lambda_max);
+  require_eigenpair(truth);
   truth.dt = 2.0 / std::sqrt(truth.lambda_max);
   truth.limit = cycle::damped_timestep(truth.dt, local_damping);
   truth.products = product.products();

@@ -23,6 +23,7 @@ struct GroupSummary {
   std::int32_t rule = 0;
   std::int64_t contacts = 0;
   std::size_t history_bytes = 0;  ///< a contact; 0 where the law keeps no state
+  bool needs_rotation = false;
 };
 
 std::vector<GroupSummary> summarise(const contact::Contacts& contacts) {
@@ -31,17 +32,15 @@ std::vector<GroupSummary> summarise(const contact::Contacts& contacts) {
     using Group = std::decay_t<decltype(group)>;
     using State = typename Group::State;
     result.push_back({std::string(Group::KinematicsType::name), std::string(Group::LawType::name), group.rule,
-                      group.size(), std::is_empty_v<State> ? 0 : sizeof(State)});
+                      group.size(), std::is_empty_v<State> ? 0 : sizeof(State), group.law.needs_rotation()});
   });
   return result;
 }
 
 std::string rule_text(const model::Scene& scene, std::int32_t rule) {
-  const model::ContactRule& r = scene.contacts[static_cast<std::size_t>(rule)];
+  const model::ContactRule& r = scene.contacts[rule];
   const auto name = [&](std::int32_t material) {
-    return material == model::ContactRule::any_material
-               ? std::string("any")
-               : scene.materials[static_cast<std::size_t>(material)].name;
+    return material == model::ContactRule::any_material ? std::string("any") : scene.materials[material].name;
   };
   return fmt::format("contacts[{}] {}-{}", rule, name(r.first), name(r.second));
 }
@@ -51,9 +50,15 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
                                   const assembly::Unknowns& unknowns,
                                   const std::vector<GroupSummary>& groups) {
   std::vector<std::string> parts;
-  if (unknowns.rotations() == 0) parts.emplace_back("rotations (no contact has shear stiffness)");
-  if (std::all_of(groups.begin(), groups.end(), [](const GroupSummary& g) { return g.history_bytes == 0; }))
-    parts.emplace_back("contact history (no law needs one)");
+  const auto none = [&](auto has) { return std::none_of(groups.begin(), groups.end(), has); };
+  const char* why = groups.empty() ? "nothing touches"
+                    : none([](const GroupSummary& g) { return g.needs_rotation; })
+                        ? "no contact has shear stiffness"
+                        : "all are fixed";
+  if (unknowns.rotations() == 0) parts.push_back(fmt::format("rotations ({})", why));
+  if (none([](const GroupSummary& g) { return g.history_bytes > 0; }))
+    parts.push_back(
+        fmt::format("contact history ({})", groups.empty() ? "nothing touches" : "no law needs one"));
   if (!model.cell.any()) parts.emplace_back("periodic images");
   if (model.walls.empty()) parts.emplace_back("walls");
   if (scene.gravity.isZero(0)) parts.emplace_back("gravity");
@@ -65,11 +70,14 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
 std::vector<std::string> passes(const model::Scene& scene, const assembly::Unknowns& unknowns,
                                 const std::vector<GroupSummary>& groups) {
   std::vector<std::string> parts;
-  if (!groups.empty()) parts.emplace_back("search");
+  const auto acts = [](const model::ContactRule& rule) { return rule.law != "none"; };
+  if (std::any_of(scene.contacts.begin(), scene.contacts.end(), acts)) parts.emplace_back("search");
   for (const GroupSummary& g : groups) parts.push_back(fmt::format("{} {} forces", g.kinematics, g.law));
   if (!scene.gravity.isZero(0)) parts.emplace_back("gravity");
   if (scene.local_damping > 0) parts.emplace_back("local damping");
-  parts.emplace_back("translation");
+  const auto moves = [](model::FixedComponents fixed) { return fixed.translation() != 7; };
+  if (std::any_of(scene.bodies.fixed.begin(), scene.bodies.fixed.end(), moves))
+    parts.emplace_back("translation");
   if (unknowns.rotations() > 0) parts.emplace_back("rotation");
   return parts;
 }

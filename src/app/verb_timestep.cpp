@@ -119,6 +119,7 @@ void timestep(const Options& options) {
   const assembly::Model model = assembly::build_model(scene);
   petsc::start();  // before the clocks of the comparison
   const Comparison comparison = timestep::compare(model);
+  if (!options.petsc.empty()) petsc::require_options_used();
   const PolicyStep policy = policy_step(scene.timestep, model.local_damping, comparison);
   write_json(options.json, to_json(comparison, policy));
   print(scene, comparison, policy);

@@ -32,32 +32,24 @@ contact::ContactMotion motion_of(const contact::ContactGeometry& geometry, const
   return contact::contact_motion(geometry, trial.body(pair.a), b);
 }
 
-/// What one contact does to its ends: -F at the first, +F at the second (seed eq. 1.20).
-struct EndForces {
-  Vec3 force;  ///< F, of the first side on the second
-  Vec3 moment_a;
-  Vec3 moment_b;
-};
-
 template <class Group>
-std::vector<EndForces> evaluate(const Model& model, const Trial& trial, const Group& group) {
+std::vector<contact::EndForces> evaluate(const Model& model, const Trial& trial, const Group& group) {
   using Kinematics = typename Group::KinematicsType;
   const contact::Placement placement = model.placement(trial.position);
-  std::vector<EndForces> result(group.pairs.size());
+  std::vector<contact::EndForces> result(group.pairs.size());
   for_each_index(group.size(), [&](std::int64_t index) {
     const auto c = static_cast<std::size_t>(index);
     const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
     typename Group::State discarded;
     const contact::ContactForce f = group.law.evaluate(motion_of<Kinematics>(geometry, trial, group.pairs[c]),
                                                        group.states[c], discarded);
-    result[c] = {f.force, -geometry.lever_a.cross(f.force) - f.moment,
-                 geometry.lever_b.cross(f.force) + f.moment};
+    result[c] = contact::end_forces(geometry, f);
   });
   return result;
 }
 
 template <class Group>
-void add_to_bodies(const Group& group, const std::vector<EndForces>& ends, BodyForces& sum) {
+void add_to_bodies(const Group& group, const std::vector<contact::EndForces>& ends, BodyForces& sum) {
   const auto bodies = static_cast<std::int32_t>(sum.force.size());
   std::vector<std::int32_t> body_of_end(2 * group.pairs.size(), -1);
   for (std::size_t c = 0; c < group.pairs.size(); ++c) {
@@ -68,9 +60,9 @@ void add_to_bodies(const Group& group, const std::vector<EndForces>& ends, BodyF
   for_each_index(bodies, [&](std::int64_t body) {
     const auto i = static_cast<std::size_t>(body);
     for (const std::int32_t end : ends_of_body.links(static_cast<std::int32_t>(body))) {
-      const EndForces& f = ends[static_cast<std::size_t>(end) / 2];
+      const contact::EndForces& f = ends[static_cast<std::size_t>(end) / 2];
       const bool first = end % 2 == 0;
-      sum.force[i] += first ? Vec3(-f.force) : f.force;
+      sum.force[i] += first ? f.force_a : f.force_b;
       sum.moment[i] += first ? f.moment_a : f.moment_b;
     }
   });

@@ -20,7 +20,11 @@ std::optional<AnyGroup> new_group(const model::ContactRule& rule, std::int32_t i
   std::optional<AnyGroup> group;
   for_each_type(contact::LawTypes{}, [&](auto tag) {
     using Law = typename decltype(tag)::type;
-    if (!group && Law::name == rule.law && Law::serves(rule.parameters))
+    if (group || Law::name != rule.law) return;
+    if (rule.parameters.size() != Law::parameters.size())
+      throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
+                                   rule.parameters.size(), Law::name, Law::parameters.size()));
+    if (Law::serves(rule.parameters))
       group = ContactGroup<Kinematics, Law>{Law::from_values(rule.parameters), index, {}, {}};
   });
   return group;
@@ -63,9 +67,9 @@ class Grouping {
   void add(const Pair& pair, std::int32_t material_a, std::int32_t material_b) {
     const std::int32_t rule = rule_of_(material_a, material_b);
     if (rule < 0) throw InputError(missing_rule(material_a, material_b));
-    const model::ContactRule& wanted = scene_.contacts[static_cast<std::size_t>(rule)];
+    const model::ContactRule& wanted = scene_.contacts[rule];
     if (wanted.law == "none") return;
-    std::optional<AnyGroup>& group = groups_[static_cast<std::size_t>(rule)];
+    std::optional<AnyGroup>& group = groups_[rule];
     if (!group) group = new_group<Kinematics>(wanted, rule);
     if (!group) throw InputError(fmt::format("contacts[{}]: there is no law \"{}\"", rule, wanted.law));
     std::visit([&](auto& concrete) { add_if_acting(concrete, placement_, pair); }, *group);
@@ -80,7 +84,7 @@ class Grouping {
 
  private:
   std::string missing_rule(std::int32_t a, std::int32_t b) const {
-    const auto name = [&](std::int32_t m) { return scene_.materials[static_cast<std::size_t>(m)].name; };
+    const auto name = [&](std::int32_t m) { return scene_.materials[m].name; };
     return fmt::format("no entry of contacts matches {} and {}, which touch; add one with between: [{}, {}]",
                        name(a), name(b), name(a), name(b));
   }

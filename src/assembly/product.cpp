@@ -114,9 +114,7 @@ GeneralRecord record(const ContactElement& e, TypeTag<GeneralRecord>) {
 /// Kinds of all elements: each is asked for several times, and takes a root.
 std::vector<Kind> kinds_of(std::span<const ContactElement> elements) {
   std::vector<Kind> kinds(elements.size());
-  for_each_index(std::ssize(elements), [&](std::int64_t c) {
-    kinds[static_cast<std::size_t>(c)] = kind_of(elements[static_cast<std::size_t>(c)]);
-  });
+  for_each_index(std::ssize(elements), [&](std::int64_t c) { kinds[c] = kind_of(elements[c]); });
   return kinds;
 }
 
@@ -162,7 +160,7 @@ class Visits {
     visits_.resize(static_cast<std::size_t>(offsets_.back()));
     std::vector<std::int64_t> next(offsets_.begin(), offsets_.end() - 1);
     each_visit([&](std::int32_t body, const Visit& visit) {
-      visits_[static_cast<std::size_t>(next[static_cast<std::size_t>(body)]++)] = visit;
+      visits_[static_cast<std::size_t>(next[body]++)] = visit;
     });
   }
   std::span<const Visit> of(std::int32_t body) const {
@@ -184,7 +182,7 @@ Records<Record> make_records(const Chunk& chunk, Kind kind, const Visits& visits
   const auto each_visit = [&](const auto& act) {
     for (std::int32_t body = chunk.first_body; body < chunk.last_body; ++body)
       for (const Visit& visit : visits.of(body))
-        if (kinds[static_cast<std::size_t>(visit.element)] == kind) act(visit);
+        if (kinds[visit.element] == kind) act(visit);
   };
   std::size_t inner = 0;
   std::size_t cut = 0;
@@ -193,7 +191,7 @@ Records<Record> make_records(const Chunk& chunk, Kind kind, const Visits& visits
   result.inner.reserve(inner);
   result.cut.reserve(cut);
   each_visit([&](const Visit& visit) {
-    const ContactElement& e = elements[static_cast<std::size_t>(visit.element)];
+    const ContactElement& e = elements[visit.element];
     Record r = visit.swapped ? record(turned(e), TypeTag<Record>{}) : record(e, TypeTag<Record>{});
     r.near_body = visit.swapped ? e.b : e.a;
     r.far_body = visit.swapped ? e.a : e.b;
@@ -215,7 +213,7 @@ double* zeroed_sums(std::size_t size) {
 std::vector<double> full_scaling(const Unknowns& unknowns, std::span<const double> scale) {
   if (!scale.empty()) return {scale.begin(), scale.end()};
   std::vector<double> ones(static_cast<std::size_t>(unknowns.size()), 0.0);
-  for (const std::int32_t number : unknowns.free_components()) ones[static_cast<std::size_t>(number)] = 1.0;
+  for (const std::int32_t number : unknowns.free_components()) ones[number] = 1.0;
   return ones;
 }
 
@@ -266,8 +264,7 @@ struct StiffnessProduct::Data {
   /// Calls act(chunk) for all chunks, on all threads.
   template <class Act>
   void for_each_chunk(const Act& act) {
-    for_chunks(std::ssize(chunks), 1,
-               [&](std::int64_t c, std::int64_t, std::int64_t) { act(chunks[static_cast<std::size_t>(c)]); });
+    for_chunks(std::ssize(chunks), 1, [&](std::int64_t c, std::int64_t, std::int64_t) { act(chunks[c]); });
   }
 
   product::Layout layout;

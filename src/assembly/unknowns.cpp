@@ -16,7 +16,7 @@ std::vector<Demand> demands(std::int32_t bodies, std::span<const contact::Contac
     const bool turns = k.shear > 0 || k.twist > 0 || k.bending > 0;
     for (const std::int32_t body : {element.a, element.b}) {
       if (body == contact::no_body) continue;
-      Demand& demand = result[static_cast<std::size_t>(body)];
+      Demand& demand = result[body];
       demand.touched = true;
       demand.turned = demand.turned || turns;
     }
@@ -31,15 +31,15 @@ Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::Contact
   const std::vector<Demand> demand = demands(bodies.size(), elements);
   const auto number = [&](std::int32_t body, int which, std::uint8_t fixed) {
     if (fixed == 7) return;
-    block_[static_cast<std::size_t>(body)][static_cast<std::size_t>(which)] = blocks();
+    block_[body][which] = blocks();
     body_.push_back(body);
     is_rotation_.push_back(static_cast<std::uint8_t>(which));
     mask_.push_back(fixed);
     rotations_ += which;
   };
   for (std::int32_t body = 0; body < bodies.size(); ++body) {
-    const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(body)];
-    const Demand& wanted = demand[static_cast<std::size_t>(body)];
+    const model::FixedComponents fixed = bodies.fixed[body];
+    const Demand& wanted = demand[body];
     if (!wanted.touched) {
       if (!fixed.all()) set_aside_.push_back(body);
       continue;

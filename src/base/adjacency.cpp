@@ -17,7 +17,7 @@ Adjacency group_by_row(std::int32_t rows, std::span<const std::int32_t> row_of) 
   for (std::size_t k = 0; k < row_of.size(); ++k) {
     if (row_of[k] < 0) continue;
     std::int64_t& slot = next[static_cast<std::size_t>(row_of[k])];
-    result.targets[static_cast<std::size_t>(slot++)] = static_cast<std::int32_t>(k);
+    result.targets[slot++] = static_cast<std::int32_t>(k);
   }
   return result;
 }

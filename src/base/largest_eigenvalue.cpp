@@ -78,6 +78,7 @@ bool above_all(const Tridiagonal& t, double x) {
 }  // namespace
 
 double largest_eigenvalue(const Mat6& matrix) {
+  if (!matrix.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   const double size = matrix.diagonal().maxCoeff();
   if (!(size > 0)) return 0.0;
   const Eigen::Tridiagonalization<Mat6> reduced(matrix / size);

@@ -15,7 +15,7 @@ namespace {
 std::vector<std::int64_t> balls_of_materials(const model::Scene& scene) {
   std::vector<std::int64_t> count(scene.materials.size());
   for (const std::int32_t material : scene.bodies.material)
-    if (material >= 0) ++count[static_cast<std::size_t>(material)];
+    if (material >= 0) ++count[material];
   return count;
 }
 
@@ -38,7 +38,7 @@ using MaterialPair = std::pair<std::int32_t, std::int32_t>;
 std::set<MaterialPair> meeting_pairs(const model::Scene& scene) {
   const std::vector<std::int64_t> balls = balls_of_materials(scene);
   const auto count = static_cast<std::int32_t>(balls.size());
-  const auto balls_of = [&](std::int32_t material) { return balls[static_cast<std::size_t>(material)]; };
+  const auto balls_of = [&](std::int32_t material) { return balls[material]; };
   std::set<MaterialPair> pairs;
   for (std::int32_t a = 0; a < count; ++a) {
     if (balls_of(a) == 0) continue;
@@ -61,8 +61,7 @@ void check_rules(const Section& root, const SceneDraft& draft) {
         "contacts",
         fmt::format("no entry for \"{0}\" and \"{1}\", which can meet; add e.g. \"- {{between: [{0}, "
                     "{1}], law: linear, kn: 1e5 N/m}}\", or \"law: none\" if they do not see each other",
-                    scene.materials[static_cast<std::size_t>(a)].name,
-                    scene.materials[static_cast<std::size_t>(b)].name));
+                    scene.materials[a].name, scene.materials[b].name));
   }
 }
 
@@ -72,7 +71,7 @@ double height_above(const model::Plane& wall, const Vec3& x) {
 
 void report_behind(const SceneDraft& draft, std::int32_t ball, const model::Plane& wall,
                    Diagnostics& diagnostics) {
-  const Vec3& x = draft.scene.bodies.position[static_cast<std::size_t>(ball)];
+  const Vec3& x = draft.scene.bodies.position[ball];
   const double height = height_above(wall, x);
   const std::string where = height == 0 ? "on" : fmt::format("{:.6g} m behind", -height);
   diagnostics.add(
@@ -117,7 +116,7 @@ std::string text_of(const Place& place) {
 void check_coincidence(const SceneDraft& draft, Diagnostics& diagnostics) {
   const model::Bodies& bodies = draft.scene.bodies;
   for (const auto& [first, second] : coincident_balls(bodies.position, bodies.radius, draft.scene.cell)) {
-    const Vec3& x = bodies.position[static_cast<std::size_t>(second)];
+    const Vec3& x = bodies.position[second];
     diagnostics.add(
         draft.ball_places.of(second),
         fmt::format("ball {} has the centre ({}, {}, {}) of ball {} ({}), so their contact has no "

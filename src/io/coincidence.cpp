@@ -21,8 +21,7 @@ struct Swept {
 Vec3 folded(const Vec3& x, const model::PeriodicCell& cell, double margin) {
   Vec3 result = x;
   for (int k = 0; k < 3; ++k)
-    if (cell.periodic[static_cast<std::size_t>(k)] && x[k] > cell.origin[k] + cell.lengths[k] - margin)
-      result[k] -= cell.lengths[k];
+    if (cell.periodic[k] && x[k] > cell.origin[k] + cell.lengths[k] - margin) result[k] -= cell.lengths[k];
   return result;
 }
 

@@ -21,7 +21,7 @@ model::FixedComponents read_fixed(const Section& section) {
   for (const std::string& word : section.texts("fix").value_or(std::vector<std::string>())) {
     if (word == "all") return model::FixedComponents(63);
     for (int k = 0; k < 6; ++k)
-      if (components[static_cast<std::size_t>(k)] == word) fixed.fix(k);
+      if (components[k] == word) fixed.fix(k);
   }
   return fixed;
 }
@@ -52,7 +52,7 @@ class BallList {
 
  private:
   double density(std::int32_t material) const {
-    return material < 0 ? 1.0 : draft_.scene.materials[static_cast<std::size_t>(material)].density;
+    return material < 0 ? 1.0 : draft_.scene.materials[material].density;
   }
 
   void report_size(double radius, double mass, std::int32_t line) {

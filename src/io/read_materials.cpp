@@ -21,7 +21,7 @@ void check_name(const Section& section, const std::string& name, const SceneDraf
   else if (same >= 0)
     section.report(
         "name", fmt::format("\"{}\" is the name of a material on line {} already; choose another name", name,
-                            draft.material_places[static_cast<std::size_t>(same)].line));
+                            draft.material_places[same].line));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ void read_periodic(const Section& root, SceneDraft& draft) {
   for (const std::string& axis : *axes) {
     const int k = axis[0] - 'x';
     if ((*lengths)[k] > 0) {
-      cell.periodic[static_cast<std::size_t>(k)] = true;
+      cell.periodic[k] = true;
     } else {
       section->report("box", fmt::format("length {} m along {}; a periodic axis wants a length > 0",
                                          (*lengths)[k], axis));

@@ -58,17 +58,15 @@ struct Side {
   int axis = 0;
   bool upper = false;
 
-  std::string name() const {
-    return fmt::format("{}{}", upper ? '+' : '-', axis_names[static_cast<std::size_t>(axis)]);
-  }
+  std::string name() const { return fmt::format("{}{}", upper ? '+' : '-', axis_names[axis]); }
 };
 constexpr std::array<Side, 6> sides{{{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {2, true}}};
 
 bool check_corners(const Section& box, const Vec3& lower, const Vec3& upper) {
   for (int k = 0; k < 3; ++k) {
     if (lower[k] < upper[k]) continue;
-    box.report("max", fmt::format("{0} = {1} m is not above the {0} = {2} m of min",
-                                  axis_names[static_cast<std::size_t>(k)], upper[k], lower[k]));
+    box.report("max", fmt::format("{0} = {1} m is not above the {0} = {2} m of min", axis_names[k], upper[k],
+                                  lower[k]));
     return false;
   }
   return true;
@@ -79,8 +77,7 @@ void check_open_along_cell(const Section& box, const std::vector<Side>& closed,
                            const model::PeriodicCell& cell) {
   std::string missing;
   for (const Side& side : closed)
-    if (cell.periodic[static_cast<std::size_t>(side.axis)])
-      missing += fmt::format("{}{}", missing.empty() ? "" : ", ", side.name());
+    if (cell.periodic[side.axis]) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", side.name());
   if (!missing.empty())
     box.report("open",
                fmt::format("the sides {} stand across axes that are periodic; add them to open", missing));

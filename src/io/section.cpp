@@ -113,8 +113,8 @@ std::optional<Vec3> Section::vector(std::string_view key) const {
   Vec3 result;
   bool complete = true;
   for (int k = 0; k < 3; ++k) {
-    const auto component = read_number(node->children[static_cast<std::size_t>(k)],
-                                       fmt::format("{}[{}]", path_of(key), k), description);
+    const auto component =
+        read_number(node->children[k], fmt::format("{}[{}]", path_of(key), k), description);
     complete = complete && component.has_value();
     result[k] = component.value_or(0);
   }

@@ -23,7 +23,7 @@ template <class T>
 std::vector<T> gather(const std::vector<T>& column, std::span<const std::int32_t> order) {
   std::vector<T> result;
   result.reserve(order.size());
-  for (const std::int32_t row : order) result.push_back(column[static_cast<std::size_t>(row)]);
+  for (const std::int32_t row : order) result.push_back(column[row]);
   return result;
 }
 
@@ -70,8 +70,7 @@ void sort_along_curve(Bodies& bodies) {
   }
   std::sort(keys.begin(), keys.end(), [&](const auto& left, const auto& right) {
     if (left.first != right.first) return left.first < right.first;
-    return bodies.identity[static_cast<std::size_t>(left.second)] <
-           bodies.identity[static_cast<std::size_t>(right.second)];
+    return bodies.identity[left.second] < bodies.identity[right.second];
   });
   std::vector<std::int32_t> order(keys.size());
   std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });

@@ -7,7 +7,7 @@ namespace eigengrain::model {
 Vec3 PeriodicCell::wrapped(const Vec3& x) const {
   Vec3 result = x;
   for (int k = 0; k < 3; ++k) {
-    if (!periodic[static_cast<std::size_t>(k)]) continue;
+    if (!periodic[k]) continue;
     const double upper = origin[k] + lengths[k];
     result[k] = x[k] - lengths[k] * std::floor((x[k] - origin[k]) / lengths[k]);
     // Rounding may leave the copy a hair outside of the half-open interval.

@@ -55,9 +55,9 @@ void merge_foreign(std::int32_t bodies, std::vector<FoundPairs>& chunks) {
   const Adjacency rows = group_by_row(bodies, row_of);
 
   for_chunks(bodies, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t c) {
-    std::vector<CandidatePair>& own = chunks[static_cast<std::size_t>(c)].own;
-    const auto first = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(begin)]);
-    const auto last = static_cast<std::size_t>(rows.offsets[static_cast<std::size_t>(end)]);
+    std::vector<CandidatePair>& own = chunks[c].own;
+    const auto first = static_cast<std::size_t>(rows.offsets[begin]);
+    const auto last = static_cast<std::size_t>(rows.offsets[end]);
     std::vector<CandidatePair> arrived;
     arrived.reserve(last - first);
     for (std::size_t k = first; k < last; ++k)
@@ -108,7 +108,7 @@ PairSearch search_pairs(std::span<const Vec3> centres, std::span<const double> r
     PairSearcher searcher(centres, radii, wrapped, levels, reach);
     for (std::int64_t body = begin; body < end; ++body)
       searcher.search(static_cast<std::int32_t>(body), found);
-    chunks[static_cast<std::size_t>(c)] = std::move(found);
+    chunks[c] = std::move(found);
   });
   // Thrown here because an exception must not leave a parallel loop.
   for (const FoundPairs& chunk : chunks)

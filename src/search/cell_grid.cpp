@@ -35,7 +35,7 @@ CellGrid::CellGrid(const WrappedBodies& bodies, std::span<const std::int32_t> me
 }
 
 void CellGrid::set_axes(const WrappedBodies& bodies, std::span<const std::int32_t> members, double edge) {
-  const auto centre = [&](std::int32_t body) { return bodies.centres()[static_cast<std::size_t>(body)]; };
+  const auto centre = [&](std::int32_t body) { return bodies.centres()[body]; };
   Box box{.lower = centre(members.front()), .upper = centre(members.front())};
   for (const std::int32_t body : members) {
     box.lower = box.lower.cwiseMin(centre(body));
@@ -70,20 +70,20 @@ void CellGrid::fill(std::span<const Vec3> centres, std::span<const std::int32_t>
   const auto count = static_cast<std::int64_t>(members.size());
   std::vector<std::int32_t> bucket_of(members.size());
   for_each_index(count, [&](std::int64_t m) {
-    const Vec3& centre = centres[static_cast<std::size_t>(members[static_cast<std::size_t>(m)])];
+    const Vec3& centre = centres[static_cast<std::size_t>(members[m])];
     const std::int64_t x = axes_[0].cell_of(centre.x());
     const std::int64_t y = axes_[1].cell_of(centre.y());
     const std::int64_t z = axes_[2].cell_of(centre.z());
     const std::int64_t bucket = dense_ ? dense_bucket(x, y, z) : table_bucket(x, y, z);
-    bucket_of[static_cast<std::size_t>(m)] = static_cast<std::int32_t>(bucket);
+    bucket_of[m] = static_cast<std::int32_t>(bucket);
   });
   Adjacency sorted = group_by_row(static_cast<std::int32_t>(buckets), bucket_of);
   starts_ = std::move(sorted.offsets);
   entries_.resize(members.size());
   for_each_index(count, [&](std::int64_t e) {
-    const std::int32_t member = sorted.targets[static_cast<std::size_t>(e)];
-    const std::int32_t body = members[static_cast<std::size_t>(member)];
-    entries_[static_cast<std::size_t>(e)] = {centres[static_cast<std::size_t>(body)], body};
+    const std::int32_t member = sorted.targets[e];
+    const std::int32_t body = members[member];
+    entries_[e] = {centres[body], body};
   });
 }
 

@@ -143,8 +143,8 @@ class CellGrid {
   }
 
   std::span<const Entry> entries_of(std::int64_t bucket, std::int64_t buckets) const {
-    const std::int64_t begin = starts_[static_cast<std::size_t>(bucket)];
-    const std::int64_t end = starts_[static_cast<std::size_t>(bucket + buckets)];
+    const std::int64_t begin = starts_[bucket];
+    const std::int64_t end = starts_[bucket + buckets];
     return {entries_.data() + begin, static_cast<std::size_t>(end - begin)};
   }
 

@@ -47,8 +47,8 @@ void PairSearcher::search(std::int32_t body, FoundPairs& result) {
 void PairSearcher::preselect(std::int32_t body, const SizeLevel& level, std::int32_t least_partner,
                              FoundPairs& result) {
   hit_count_ = 0;
-  const Vec3 centre = wrapped_.centres()[static_cast<std::size_t>(body)];
-  const double size = radii_[static_cast<std::size_t>(body)] + 0.5 * reach_;
+  const Vec3 centre = wrapped_.centres()[body];
+  const double size = radii_[body] + 0.5 * reach_;
   // The factor covers the rounding of every expression that is relative to the distance itself.
   const double range = (size + level.largest) * (1 + 0x1p-40) + wrapped_.slack();
   level.grid.visit_near(centre, range, [&](std::span<const CellGrid::Entry> entries, const WideImage& image) {

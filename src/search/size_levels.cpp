@@ -28,7 +28,7 @@ std::vector<std::int32_t> size_classes(std::span<const double> radii, double rea
 
 double largest_size(std::span<const std::int32_t> members, std::span<const double> radii, double reach) {
   double largest = 0;
-  for (const std::int32_t body : members) largest = std::max(largest, radii[static_cast<std::size_t>(body)]);
+  for (const std::int32_t body : members) largest = std::max(largest, radii[body]);
   return largest + 0.5 * reach;
 }
 
@@ -41,13 +41,13 @@ SizeLevels::SizeLevels(const WrappedBodies& bodies, std::span<const double> radi
   for (std::int32_t c = 0; c < most_classes; ++c) {
     const std::span<const std::int32_t> members = classes.links(c);
     if (members.empty()) continue;
-    level_of_class[static_cast<std::size_t>(c)] = static_cast<std::int32_t>(levels_.size());
+    level_of_class[c] = static_cast<std::int32_t>(levels_.size());
     const double largest = largest_size(members, radii, reach);
     // A hair more than the greatest distance of a pair, so that a body's box spans three cells and not four.
     const double edge = 2 * largest * (1 + 0x1p-20) + 2 * bodies.slack();
     levels_.push_back({largest, CellGrid(bodies, members, edge)});
   }
-  for (std::int32_t& level : own_) level = level_of_class[static_cast<std::size_t>(level)];
+  for (std::int32_t& level : own_) level = level_of_class[level];
 }
 
 }  // namespace eigengrain::search

@@ -27,7 +27,7 @@ class SizeLevels {
 
   /// The levels to search for partners of a body; the last is its own.
   std::span<const SizeLevel> for_body(std::int32_t body) const {
-    return std::span(levels_).first(static_cast<std::size_t>(own_[static_cast<std::size_t>(body)]) + 1);
+    return std::span(levels_).first(static_cast<std::size_t>(own_[body]) + 1);
   }
 
  private:

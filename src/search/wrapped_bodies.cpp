@@ -47,7 +47,7 @@ WrappedBodies::WrappedBodies(std::span<const Vec3> centres, const model::Periodi
   if (centres.empty() || !cell.any()) return;
   const Box box = bounding_box(centres);
   for (int k = 0; k < 3; ++k) {
-    if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
+    if (!cell.periodic[k]) continue;
     const double length = cell.lengths[k];
     EIGENGRAIN_ASSERT(length > 0 && std::isfinite(length), k, length);
     require_near(box.lower[k], cell.origin[k], length, k);
@@ -67,9 +67,9 @@ void WrappedBodies::wrap() {
   for_each_index(static_cast<std::int64_t>(given_.size()), [&](std::int64_t i) {
     const auto body = static_cast<std::size_t>(i);
     for (int k = 0; k < 3; ++k) {
-      if (!cell_.periodic[static_cast<std::size_t>(k)]) continue;
+      if (!cell_.periodic[k]) continue;
       const double home = home_along(given_[body][k], cell_.origin[k], lengths_[k]);
-      homes_[body][static_cast<std::size_t>(k)] = static_cast<std::int32_t>(home);
+      homes_[body][k] = static_cast<std::int32_t>(home);
       copies_[body][k] -= home * lengths_[k];
     }
   });

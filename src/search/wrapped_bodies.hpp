@@ -32,9 +32,7 @@ class WrappedBodies {
   std::span<const Vec3> centres() const { return copies_.empty() ? given_ : copies_; }
 
   /// Where the body itself stands, seen from its wrapped copy: x = wrapped + home * lengths.
-  const WideImage& home(std::int32_t body) const {
-    return homes_.empty() ? no_image_ : homes_[static_cast<std::size_t>(body)];
-  }
+  const WideImage& home(std::int32_t body) const { return homes_.empty() ? no_image_ : homes_[body]; }
 
   const model::PeriodicCell& cell() const { return cell_; }
   /// Cell lengths, 0 along an axis that does not repeat.

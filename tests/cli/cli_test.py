@@ -140,6 +140,22 @@ class CommandLine(unittest.TestCase):
         done = self.run_program("timestep", self.scene(PAIR), "--petsc", "-eps_type no_such_solver")
         self.assertEqual(done.returncode, 1)
         self.assertIn("no_such_solver", done.stderr)
+        done = self.run_program("timestep", self.scene(PAIR), "--petsc", "-eps_ncw 40")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("-eps_ncw", done.stderr)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_a_loose_eigenpair_does_not_pass_for_the_truth(self):
+        done = self.run_program("timestep", EXAMPLES / "scenes" / "packing_10k.yaml", "--petsc", "-eps_tol 1e-1")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("residual", done.stderr)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_overflow_is_an_error_and_not_an_unlimited_step(self):
+        done = self.run_program("timestep", self.scene(PAIR), "--set", "contacts.0.kn=1e300",
+                                "--set", "materials.0.density=1e-300")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertNotIn("no timestep is critical", done.stdout)
 
 
 if __name__ == "__main__":

@@ -118,8 +118,10 @@ TYPED_TEST(LawContract, DoesNotKnowTheFrame) {
       typename TypeParam::State sheared_state = law.formed(frame * n);
       law.evaluate(moved(frame * n, 0.2, frame * shift), law.formed(frame * n), sheared_state);
       typename TypeParam::State next;
-      const ContactMotion motion{
-          .normal = frame * n_next, .overlap = 0.2, .displacement = frame * delta, .spin = frame * spin};
+      const ContactMotion motion{.normal = frame * n_next,
+                                 .overlap = 0.2,
+                                 .displacement = frame * delta,
+                                 .mean_rotation = frame * spin};
       return law.evaluate(motion, sheared_state, next).force;
     };
     EXPECT_LT((q * force(Mat3::Identity()) - force(q)).norm(), 1e-14);

@@ -113,7 +113,7 @@ TEST(BuildModel, TouchesThroughSeveralImages) {
 }
 
 TEST(ContactForces, BalanceAndAreWhatThePaperSays) {
-  // Two balls overlapping by 0.1 along x on a floor at z = -1 (overlap 0 for them): F = kn U on each.
+  // Two balls overlapping by 0.1 along x on a floor at z = -0.95, so by 0.05: F = kn U on each.
   const Model model =
       SceneBuilder({.kn = 100}).ball({0, 0, 0}).ball({1.9, 0, 0}).plane({0, 0, -0.95}, {0, 0, 1}).build();
   const BodyForces f = contact_forces(model);

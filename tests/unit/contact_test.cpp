@@ -54,7 +54,7 @@ TEST(ContactMotion, RigidMotionMovesNothingAtTheContact) {
   const ContactMotion motion = contact_motion(g, a, b);
   EXPECT_LT(motion.displacement.norm(), 1e-15);
   EXPECT_EQ(motion.rotation, Vec3(0, 0, 0));
-  EXPECT_TRUE(motion.spin.isApprox(theta, 1e-15));
+  EXPECT_TRUE(motion.mean_rotation.isApprox(theta, 1e-15));
 }
 
 TEST(ShearTransport, ExactRotationKeepsLengthAndTangency) {
@@ -91,13 +91,13 @@ TEST(ShearTransport, TurnsWithARigidRotation) {
   // Second order: the angle of the twist errs by O(θ³) a step.
   EXPECT_LT((exact - start).norm(), 50 / double(steps) / steps);
   EXPECT_NEAR(exact.norm(), start.norm(), 1e-12);
-  // The seed's form grows by up to ½θ² a step: first order a turn, up to ½(2π)²/steps = 2%.
+  // PFC3D's form grows by up to ½θ² a step: first order a turn, up to ½(2π)²/steps = 2%.
   EXPECT_GT(small.norm() - start.norm(), 0.002 * start.norm());
   EXPECT_LT(small.norm() - start.norm(), 0.02 * start.norm());
 }
 
 TEST(ShearTransport, SmallAngleFormErrsAsTheorySays) {
-  // Seed, eqs. 1.11-1.12 (theory §2): for a tilt by θ across F, |F| grows by ½θ² of itself.
+  // Eqs. 1.11-1.12 (docs/theory.md): for a tilt by θ across F, |F| grows by ½θ² of itself.
   const double theta = 1e-3;
   const Vec3 n_old(0, 0, 1);
   const Vec3 n(0, std::sin(theta), std::cos(theta));  // tilt about x
@@ -108,7 +108,7 @@ TEST(ShearTransport, SmallAngleFormErrsAsTheorySays) {
   EXPECT_GT(std::abs(carried.dot(n)), 0.1 * theta * theta * theta);
 }
 
-TEST(ContactElement, EqualsTheOracleOfTheSeedsTermList) {
+TEST(ContactElement, EqualsTheOracleOfPfc3dsTermList) {
   std::ifstream file(EIGENGRAIN_TEST_DATA "/contact_stiffness.json");
   const nlohmann::json oracle = nlohmann::json::parse(file);
   ASSERT_EQ(oracle.size(), 50U);

@@ -55,7 +55,25 @@ TEST(Bounds, AreNeverAboveTheTruthInTenThousandScenes) {
     unsafe_estimate = std::max(unsafe_estimate, estimate);
     if (HasFailure()) FAIL() << "scene " << scenes;
   }
-  EXPECT_GT(unsafe_estimate, 1.0);  // the seed's estimate is not a bound
+  EXPECT_GT(unsafe_estimate, 1.0);  // PFC3D's estimate is not a bound
+}
+
+TEST(Bounds, AreSafeForNearlyIsotropicBlocks) {
+  // A spread of eigenvalues that vanishes in the variance of the block: ball 0 has six equal ones, ball 1 one
+  // that is larger by 3a and five that are smaller by a.
+  for (const double a : {1e-10, 1e-9, 3e-9, 1e-8, 3e-8}) {
+    System s(
+        SceneBuilder({.kn = 1, .ks = 1}).ball({0, 0, 0.9}).ball({9, 0, 0.9}).plane({0, 0, 0}, {0, 0, 1}));
+    ASSERT_EQ(s.elements.size(), 2U);
+    for (contact::ContactElement& e : s.elements) {
+      const double along = e.a == 0 ? 1 : 1 + 3 * a;
+      const double across = e.a == 0 ? 1 : 1 - a;
+      e.lever_a.setZero();
+      e.stiffness = {along, across, across, across};
+    }
+    std::fill(s.mass.begin(), s.mass.end(), 1.0);
+    EXPECT_LE(cycle::block_bound(s), 2 / std::sqrt(1 + 3 * a)) << a;
+  }
 }
 
 TEST(LargestEigenvalue, IsAnUpperBoundToRounding) {

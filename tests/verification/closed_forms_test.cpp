@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <ostream>
 
 namespace eigengrain::test {
 namespace {
@@ -27,7 +28,7 @@ double relative(double value, double expected) {
   return std::abs(value / expected - 1);
 }
 
-/// The eigenvalue that the sparse path finds is the last of the dense spectrum.
+/// The dense spectrum is the expected one, and the sparse path finds its last eigenvalue.
 void expect_spectrum(const System& s, std::vector<double> expected, double tolerance) {
   const Eigen::VectorXd found = s.spectrum();
   std::sort(expected.begin(), expected.end());
@@ -126,6 +127,10 @@ struct LatticeCase {
   double (*rotation_held)(double s);
 };
 
+void PrintTo(const LatticeCase& c, std::ostream* out) {
+  *out << c.lattice.name;
+}
+
 class LatticeSpectrum : public testing::TestWithParam<LatticeCase> {};
 
 constexpr model::FixedComponents planar_free(0b011100);
@@ -186,7 +191,7 @@ TEST(LatticeSpectrum, LargerBoxesHoldNoFasterWave) {
 
 TEST(LatticeSpectrum, HexagonalWithRotationHeld) {
   // The critical wave fits the box at s = 0 (λ = 6) and s = 1 (λ = 9); between them it is incommensurate, and
-  // a finite box approaches Bloch's value (4/Δt² of the table) from below as its size grows.
+  // a finite box approaches Bloch's value (4/Δt², Δt to five digits) from below as its size grows.
   const auto held = [](double s, int n) {
     return lambda_max(System(make_lattice(hexagonal(), {.kn = 1, .ks = s}, {n, n, 1}, planar_held)));
   };
@@ -251,6 +256,45 @@ TEST(Bounds, AreExactForAPairAndACubicLattice) {
   EXPECT_NEAR(cycle::block_bound(pair) / pair_dt, 1, 1e-10);
   const System cubic(make_lattice(simple_cubic(), {.kn = 1, .ks = 0.5}, {2, 2, 2}));
   EXPECT_NEAR(cycle::block_bound(cubic) / (2 / std::sqrt(10)), 1, 1e-10);
+}
+
+/// Block bound over the truth.
+double bound_ratio(const SceneBuilder& builder) {
+  const System s(builder);
+  return cycle::block_bound(s) / critical_timestep(s).dt;
+}
+
+TEST(Bounds, AreExactWhereOneEndCannotMove) {
+  // Counting a wall, a fixed ball or an own image twice would give 1/√2.
+  const Springs springs{.kn = 1, .ks = 0.4};
+  EXPECT_NEAR(bound_ratio(SceneBuilder(springs).ball({0, 0, 0.9}).plane({0, 0, 0}, {0, 0, 1})), 1, 1e-10);
+  EXPECT_NEAR(bound_ratio(SceneBuilder(springs).ball({0, 0, 0}).ball({0, 1.9, 0}, 1, 1, fix_all)), 1, 1e-10);
+  EXPECT_NEAR(bound_ratio(SceneBuilder(springs).ball({0, 0, 0}).periodic({1.9, 9, 9})), 1, 1e-10);
+}
+
+/// Energy-like size of the leapfrog cycle with local damping (eqs. 1.26, 1.47) of a unit mass on a unit
+/// spring after some steps, started with a velocity.
+double amplitude_after(double dt, double alpha, int steps) {
+  double x = 0;
+  double v = 1;
+  double largest = 0;
+  for (int k = 0; k < steps; ++k) {
+    const double force = -x;
+    const double sign = v > 0 ? 1 : (v < 0 ? -1 : 0);
+    v += dt * (force - alpha * std::abs(force) * sign);
+    x += dt * v;
+    largest = std::max(largest, std::abs(x));
+  }
+  return largest;
+}
+
+TEST(Limit, IsWhereTheDampedCycleBlowsUp) {
+  // One mode, λ = 1: stable just below 2/√(1 + α), unbounded just above.
+  for (const double alpha : {0.0, 0.2, 0.7}) {
+    const double limit = cycle::damped_timestep(2, alpha);
+    EXPECT_LT(amplitude_after(0.999 * limit, alpha, 3000), 100) << alpha;
+    EXPECT_GT(amplitude_after(1.001 * limit, alpha, 3000), 1e6) << alpha;
+  }
 }
 
 TEST(Limit, HasTheFactorOfLocalDamping) {

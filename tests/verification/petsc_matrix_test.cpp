@@ -106,8 +106,17 @@ TEST(Petsc, ErrorsBecomeExceptionsWithTheirDescription) {
   }
 }
 
-TEST(Petsc, OptionsThatCannotBeReadAreTheUsersMistake) {
-  EXPECT_NO_THROW(petsc::set_options("-some_option 3"));
+TEST(Petsc, OptionsThatNothingUsesAreTheUsersMistake) {
+  EXPECT_THROW(petsc::set_options("eps_ncv 40"), InputError);  // no dash
+  EXPECT_NO_THROW(petsc::set_options("-eps_ncw 40"));
+  try {
+    petsc::require_options_used();
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("-eps_ncw"), std::string::npos) << error.what();
+  }
+  EIGENGRAIN_PETSC(PetscOptionsClearValue(nullptr, "-eps_ncw"));
+  EXPECT_NO_THROW(petsc::require_options_used());
 }
 
 }  // namespace

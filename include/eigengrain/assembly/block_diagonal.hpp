@@ -28,7 +28,7 @@ class BlockDiagonal {
   std::span<const Mat6> blocks() const { return blocks_; }
 
  private:
-  Mat6& block(std::int32_t body) { return blocks_[static_cast<std::size_t>(body)]; }
+  Mat6& block(std::int32_t body) { return blocks_[body]; }
 
   std::vector<Mat6> blocks_;
 };

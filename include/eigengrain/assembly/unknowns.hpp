@@ -33,15 +33,15 @@ class Unknowns {
   std::int64_t size() const { return block_size * static_cast<std::int64_t>(body_.size()); }
 
   /// Block of the body's u or θ, or none.
-  std::int32_t translation(std::int32_t body) const { return block_[static_cast<std::size_t>(body)][0]; }
-  std::int32_t rotation(std::int32_t body) const { return block_[static_cast<std::size_t>(body)][1]; }
+  std::int32_t translation(std::int32_t body) const { return block_[body][0]; }
+  std::int32_t rotation(std::int32_t body) const { return block_[body][1]; }
   /// {u, θ} of a body; {none, none} for contact::no_body.
   std::array<std::int32_t, 2> of(std::int32_t body) const {
-    return body == contact::no_body ? std::array{none, none} : block_[static_cast<std::size_t>(body)];
+    return body == contact::no_body ? std::array{none, none} : block_[body];
   }
 
   /// The way back: the body of a block, and whether the block is its θ.
-  std::int32_t body(std::int32_t block) const { return body_[static_cast<std::size_t>(block)]; }
+  std::int32_t body(std::int32_t block) const { return body_[block]; }
   bool is_rotation(std::int32_t block) const { return is_rotation_[block] != 0; }
   /// Whether component k = 0, 1, 2 of the block is fixed (masked).
   bool is_fixed(std::int32_t block, int k) const { return ((mask_[block] >> k) & 1) != 0; }

@@ -5,7 +5,7 @@
 
 namespace eigengrain::contact {
 
-/// Where two sides touch (seed eqs. 1.5-1.8).
+/// Where two sides touch (PFC3D eqs. 1.5-1.8).
 struct ContactGeometry {
   Vec3 normal;     ///< n, unit, from the first side to the second
   double overlap;  ///< U, m; positive when the surfaces interpenetrate

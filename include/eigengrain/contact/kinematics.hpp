@@ -48,8 +48,7 @@ struct BallPlane {
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
     const auto a = static_cast<std::size_t>(pair.a);
-    return ball_plane(placement.position[a], placement.radius[a],
-                      placement.walls[static_cast<std::size_t>(pair.b)]);
+    return ball_plane(placement.position[a], placement.radius[a], placement.walls[pair.b]);
   }
 };
 
@@ -69,7 +68,23 @@ inline ContactMotion contact_motion(const ContactGeometry& geometry, const SideM
           .displacement = (b.translation + b.rotation.cross(geometry.lever_b)) -
                           (a.translation + a.rotation.cross(geometry.lever_a)),
           .rotation = b.rotation - a.rotation,
-          .spin = 0.5 * (a.rotation + b.rotation)};
+          .mean_rotation = 0.5 * (a.rotation + b.rotation)};
+}
+
+/// What a contact does to its ends: force (N) and moment about the centre (N m) on each.
+struct EndForces {
+  Vec3 force_a;
+  Vec3 moment_a;
+  Vec3 force_b;
+  Vec3 moment_b;
+};
+
+/// The transpose of contact_motion (Bᵀ, PFC3D eq. 1.20): -F at the first end, +F at the second.
+inline EndForces end_forces(const ContactGeometry& geometry, const ContactForce& f) {
+  return {.force_a = -f.force,
+          .moment_a = -geometry.lever_a.cross(f.force) - f.moment,
+          .force_b = f.force,
+          .moment_b = geometry.lever_b.cross(f.force) + f.moment};
 }
 
 /// The motion of a contact that stands still.

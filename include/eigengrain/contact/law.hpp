@@ -25,7 +25,7 @@ struct ContactMotion {
   Vec3 displacement =
       Vec3::Zero();              ///< increment of the relative displacement δ since the committed state, m
   Vec3 rotation = Vec3::Zero();  ///< increment of the relative rotation φ, rad
-  Vec3 spin = Vec3::Zero();      ///< increment of the mean rotation ½(θ_1 + θ_2), rad
+  Vec3 mean_rotation = Vec3::Zero();  ///< increment of the mean rotation ½(θ_1 + θ_2), rad
 };
 
 /// What acts at the contact point, of the first side on the second.
@@ -77,13 +77,15 @@ concept ContactLaw = requires(const L& law, const ContactMotion& motion, const t
                               typename L::State& next, std::span<const double> values) {
   { L::name } -> std::convertible_to<std::string_view>;
   { L::description } -> std::convertible_to<std::string_view>;
+  { L::parameters } -> std::convertible_to<std::span<const ParameterDescription>>;
   /// Builds the law from values in the order of its parameters.
   { L::from_values(values) } -> std::same_as<L>;
   /// Whether this class is the one for these values, where several share a name.
   { L::serves(values) } -> std::same_as<bool>;
   /// The state of a contact that forms with this normal.
   { law.formed(motion.normal) } -> std::same_as<typename L::State>;
-  /// Whether the contact transmits anything; the others mean something only where this holds.
+  /// Whether the contact transmits anything. Where it does not, force and energy are zero, and stiffness and
+  /// tangent mean nothing.
   { law.acts(motion, state) } -> std::same_as<bool>;
   /// Force after the motion; `next` receives the state that a commit would store.
   { law.evaluate(motion, state, next) } -> std::same_as<ContactForce>;

@@ -25,7 +25,7 @@ inline Vec3 carry_shear(const Vec3& shear, const Vec3& n_old, const Vec3& n, con
   return std::cos(angle) * tilted + std::sin(angle) * n.cross(tilted);
 }
 
-/// The same by the seed's small-angle forms (eqs. 1.11-1.12): per step of angle θ, |shear| grows by up to ½θ²
+/// The same by PFC3D's small-angle forms (eqs. 1.11-1.12): per step of angle θ, |shear| grows by up to ½θ²
 /// and tangency errs by up to ½θ³.
 inline Vec3 carry_shear_small_angle(const Vec3& shear, const Vec3& n_old, const Vec3& n, const Vec3& spin) {
   const Vec3 tilted = shear - shear.cross(n_old.cross(n));

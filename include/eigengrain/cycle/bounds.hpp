@@ -15,7 +15,7 @@ namespace eigengrain::cycle {
 /// the damping acts like the mass M/(1 + α) (docs/theory.md).
 double damped_timestep(double undamped_dt, double local_damping);
 
-/// PFC's estimate (eq. 1.31): min over bodies and degrees of freedom of √(m/k), k the sum over the body's
+/// PFC3D's estimate (eq. 1.31): min over bodies and degrees of freedom of √(m/k), k the sum over the body's
 /// contacts of the diagonal terms of their stiffness matrices. Depends on the frame and is NOT a bound: up to
 /// 22% above the true critical step for two spheres, up to √3 in principle. s.
 double diagonal_estimate(const assembly::LinearSystem& system);

@@ -55,7 +55,7 @@ struct Scene {
   std::vector<Plane> walls;
   PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
-  double local_damping = 0.7;   ///< α of the seed's eq. 1.47
+  double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47
   TimestepChoice timestep;
   RunChoice run;
   std::vector<std::string> notes;  ///< what the reader found odd, though it is no mistake

@@ -11,7 +11,10 @@ namespace eigengrain::petsc {
 void start();
 
 /// Options as on PETSc's command line, for everything that is created from now on, e.g. "-eps_ncv 80".
-/// Throws InputError for text that PETSc cannot read.
+/// Throws InputError for text that is no list of options.
 void set_options(const std::string& options);
+
+/// Throws InputError that names options of set_options that nothing has asked for so far: misspelt ones.
+void require_options_used();
 
 }  // namespace eigengrain::petsc

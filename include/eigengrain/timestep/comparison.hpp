@@ -14,7 +14,6 @@ namespace eigengrain::timestep {
 /// An estimate of the undamped critical timestep, before any safety factor, judged against the truth.
 struct Estimate {
   std::string name;
-  std::string basis;         ///< one line: where it comes from
   bool proven = false;       ///< whether theory proves it safe, not only this scene
   double dt = 0;             ///< s
   double ratio_to_true = 0;  ///< dt over Truth::dt

@@ -9,7 +9,7 @@
 
 namespace eigengrain::contact {
 
-/// Linear springs, normal and shear, with Coulomb slip (seed eqs. 1.9-1.19).
+/// Linear springs, normal and shear, with Coulomb slip (PFC3D eqs. 1.9-1.19).
 ///
 ///   normal, secant       F_n = k_n U                         while U > 0
 ///   shear, incremental   F_s <- carried(F_s) - k_s δ_s       δ_s = the part of δ across n
@@ -131,8 +131,9 @@ class Linear {
   Vec3 trial_shear(const ContactMotion& motion, const State& old) const {
     if (!old.formed || params_.ks <= 0) return Vec3::Zero();
     const Vec3& n = motion.normal;
-    const Vec3 carried = params_.small_angle ? carry_shear_small_angle(old.shear, old.normal, n, motion.spin)
-                                             : carry_shear(old.shear, old.normal, n, motion.spin);
+    const Vec3 carried = params_.small_angle
+                             ? carry_shear_small_angle(old.shear, old.normal, n, motion.mean_rotation)
+                             : carry_shear(old.shear, old.normal, n, motion.mean_rotation);
     return carried - params_.ks * (motion.displacement - motion.displacement.dot(n) * n);
   }
 

@@ -6,8 +6,8 @@
 
 namespace eigengrain::contact {
 
-/// The linear law where it transmits no shear (friction or k_s zero): F = k_n U n while U > 0 (seed
-/// eq. 1.10). No history, so its contacts store none, and no rotations.
+/// The linear law where it transmits no shear (friction or k_s zero, and no `tension`): F = k_n U n while U >
+/// 0 (PFC3D eq. 1.10). No history, so its contacts store none, and no rotations.
 class LinearFrictionless {
  public:
   struct State {};
@@ -17,7 +17,8 @@ class LinearFrictionless {
   static constexpr auto& parameters = Linear::parameters;
 
   static bool serves(std::span<const double> values) {
-    return !Linear::from_values(values).needs_rotation() && !Linear::from_values(values).tension();
+    const Linear general = Linear::from_values(values);
+    return !general.needs_rotation() && !general.tension();
   }
   static LinearFrictionless from_values(std::span<const double> values) {
     return LinearFrictionless(values[0]);
