@@ -75,7 +75,7 @@ Kind kind_of(const ContactElement& e) {
 }
 
 /// The contact as its other end sees it.
-ContactElement turned(const ContactElement& e) {
+ContactElement with_ends_swapped(const ContactElement& e) {
   return {e.b, e.a, -e.normal, e.lever_b, e.lever_a, e.stiffness};
 }
 
@@ -192,7 +192,7 @@ Records<Record> make_records(const Chunk& chunk, Kind kind, const Visits& visits
   result.cut.reserve(cut);
   each_visit([&](const Visit& visit) {
     const ContactElement& e = elements[visit.element];
-    Record r = visit.swapped ? record(turned(e), TypeTag<Record>{}) : record(e, TypeTag<Record>{});
+    Record r = visit.swapped ? record(with_ends_swapped(e), TypeTag<Record>{}) : record(e, TypeTag<Record>{});
     r.near_body = visit.swapped ? e.b : e.a;
     r.far_body = visit.swapped ? e.a : e.b;
     if (r.far_body == no_body) r.far_body = nobody;
@@ -207,6 +207,7 @@ double* zeroed_sums(std::size_t size) {
   thread_local PaddedVector sums(64);
   if (sums.size() < size) sums = PaddedVector(size);
   std::fill_n(sums.data(), size, 0.0);
+  // NOLINTNEXTLINE(clang-analyzer-cplusplus.NewDelete): takes the thread's buffer for a local one
   return sums.data();
 }
 

@@ -60,8 +60,9 @@ void read_law(const Section& any_law, ContactRule& rule) {
     rule.parameters.push_back(read_parameter(section, parameter).value_or(0));
 }
 
-bool same_pair(const ContactRule& a, const ContactRule& b) {
-  return std::minmax(a.first, a.second) == std::minmax(b.first, b.second);
+/// Whether the rule matches every pair that the other one does ("any" is matched by "any" only).
+bool covers(const ContactRule& rule, const ContactRule& other) {
+  return rule.matches(other.first, other.second);
 }
 
 }  // namespace
@@ -80,11 +81,13 @@ void read_contacts(const Section& root, SceneDraft& draft) {
     if (!known_pair) continue;
     // A pair whose law has mistakes still counts as one that has a law: one report is enough.
     const auto earlier =
-        std::find_if(rules.begin(), rules.end(), [&](const auto& r) { return same_pair(r, rule); });
+        std::find_if(rules.begin(), rules.end(), [&](const auto& r) { return covers(r, rule); });
     if (earlier != rules.end())
-      section.report("between",
-                     fmt::format("never used: {} is for the same pair, and the first holds; remove one",
-                                 paths[static_cast<std::size_t>(earlier - rules.begin())]));
+      section.report(
+          "between",
+          fmt::format("never used: {} matches all of its pairs, and the first holds; remove one, or put "
+                      "the special entry first",
+                      paths[static_cast<std::size_t>(earlier - rules.begin())]));
     rules.push_back(std::move(rule));
     paths.push_back(fmt::format("{} (line {})", section.path(), section.place().line));
   }

@@ -187,9 +187,11 @@ TEST(Mistakes, ContactsThatAreWrong) {
   EXPECT_THAT(contacts("{between: [any], law: none}"),
               ElementsAre(HasSubstr("contacts[0].between: 1 names; two are wanted")));
   EXPECT_THAT(contacts("{law: none}"), ElementsAre(HasSubstr("contacts[0]: between is missing")));
-  EXPECT_THAT(
-      contacts("{between: [grain, steel], law: none}, {between: [steel, grain], law: none}"),
-      ElementsAre(HasSubstr("contacts[1].between: never used: contacts[0] (line 3) is for the same pair")));
+  EXPECT_THAT(contacts("{between: [grain, steel], law: none}, {between: [steel, grain], law: none}"),
+              ElementsAre(HasSubstr(
+                  "contacts[1].between: never used: contacts[0] (line 3) matches all of its pairs")));
+  EXPECT_THAT(contacts("{between: [any, any], law: none}, {between: [grain, grain], law: linear, kn: 1}"),
+              ElementsAre(HasSubstr("contacts[1].between: never used: contacts[0] (line 3)")));
   // An entry that another covers only in part, or that covers another, is how exceptions are written.
   EXPECT_THAT(contacts("{between: [grain, steel], law: none}, {between: [any, any], law: none}"), IsEmpty());
 }

@@ -11,9 +11,9 @@
 namespace eigengrain::assembly {
 
 /// y = S K S x without K: each contact is one compact record, from 32 bytes (no shear) through 64 (balls) to
-/// 128 (anything else), against about 1,000 bytes of an assembled matrix.
+/// 128 (anything else), against about 700 bytes of an assembled matrix.
 ///
-/// S is a diagonal scaling: M^-½ for the eigenvalues of M⁻¹K (mass.hpp), or ones at free components and zeros
+/// S is a diagonal scaling: M^-½ for the eigenvalues of M⁻¹K (LinearSystem::inverse_sqrt_mass), or ones at free components and zeros
 /// at masked ones for K itself.
 ///
 /// Threads share fixed chunks of bodies. A contact inside a chunk is evaluated once for both its ends, a
