@@ -13,8 +13,8 @@ namespace eigengrain::assembly {
 /// y = S K S x without K: each contact is one compact record, from 32 bytes (no shear) through 64 (balls) to
 /// 128 (anything else), against about 700 bytes of an assembled matrix.
 ///
-/// S is a diagonal scaling: M^-½ for the eigenvalues of M⁻¹K (LinearSystem::inverse_sqrt_mass), or ones at free components and zeros
-/// at masked ones for K itself.
+/// S is a diagonal scaling: M^-½ for the eigenvalues of M⁻¹K (LinearSystem::inverse_sqrt_mass), or ones at
+/// free components and zeros at masked ones for K itself.
 ///
 /// Threads share fixed chunks of bodies. A contact inside a chunk is evaluated once for both its ends, a
 /// contact between two chunks once in each, so nobody writes into another's rows and every row is summed in
