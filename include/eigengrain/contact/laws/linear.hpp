@@ -21,51 +21,6 @@ namespace eigengrain::contact {
 /// that is the linear system whose spectrum K describes.
 class Linear {
  public:
-  struct State {
-    Vec3 shear = Vec3::Zero();   ///< F_s, N, of the first side on the second
-    Vec3 normal = Vec3::Zero();  ///< n at the committed state
-    bool formed = false;
-  };
-
-  static constexpr std::string_view name = "linear";
-  static constexpr std::string_view description =
-      "linear normal and shear springs of the pair, with Coulomb slip";
-  static constexpr std::array<ParameterDescription, 5> parameters{{
-      {.name = "kn",
-       .unit = "N/m",
-       .minimum = 0,
-       .minimum_allowed = false,
-       .description = "normal stiffness of the pair"},
-      {.name = "ks",
-       .unit = "N/m",
-       .default_value = 0,
-       .minimum = 0,
-       .description =
-           "shear stiffness of the pair; counts only where friction is positive or `tension` is on"},
-      {.name = "friction", .unit = "", .default_value = 0, .minimum = 0, .description = "coefficient μ"},
-      {.name = "tension",
-       .kind = ParameterDescription::Kind::flag,
-       .unit = "",
-       .default_value = 0,
-       .description = "springs that also pull, never open and never slip; for tests of linear systems"},
-      {.name = "small_angle",
-       .kind = ParameterDescription::Kind::flag,
-       .unit = "",
-       .default_value = 0,
-       .description =
-           "carry the shear force by the small-angle forms of eqs. 1.11-1.12, not by exact rotations"},
-  }};
-
-  /// Whether this class is the one for these parameters (see linear_frictionless.hpp).
-  static bool serves(std::span<const double> /*values*/) { return true; }
-  static Linear from_values(std::span<const double> values) {
-    return Linear({.kn = values[0],
-                   .ks = values[1],
-                   .friction = values[2],
-                   .tension = values[3] != 0,
-                   .small_angle = values[4] != 0});
-  }
-
   struct Params {
     double kn = 0;        ///< N/m
     double ks = 0;        ///< N/m
@@ -73,6 +28,13 @@ class Linear {
     bool tension = false;
     bool small_angle = false;
   };
+
+  struct State {
+    Vec3 shear = Vec3::Zero();   ///< F_s, N, of the first side on the second
+    Vec3 normal = Vec3::Zero();  ///< n at the committed state
+    bool formed = false;
+  };
+
   explicit Linear(const Params& params) : params_(params) {
     if (params_.friction <= 0 && !params_.tension) params_.ks = 0;
   }
@@ -124,6 +86,47 @@ class Linear {
     evaluate(motion, old, next);
     const double normal = 0.5 * params_.kn * motion.overlap * motion.overlap;
     return params_.ks > 0 ? normal + 0.5 * next.shear.squaredNorm() / params_.ks : normal;
+  }
+
+  // What scene files say.
+
+  static constexpr std::string_view name = "linear";
+  static constexpr std::string_view description =
+      "linear normal and shear springs of the pair, with Coulomb slip";
+  static constexpr std::array<ParameterDescription, 5> parameters{{
+      {.name = "kn",
+       .unit = "N/m",
+       .minimum = 0,
+       .minimum_allowed = false,
+       .description = "normal stiffness of the pair"},
+      {.name = "ks",
+       .unit = "N/m",
+       .default_value = 0,
+       .minimum = 0,
+       .description =
+           "shear stiffness of the pair; counts only where friction is positive or `tension` is on"},
+      {.name = "friction", .unit = "", .default_value = 0, .minimum = 0, .description = "coefficient μ"},
+      {.name = "tension",
+       .kind = ParameterDescription::Kind::flag,
+       .unit = "",
+       .default_value = 0,
+       .description = "springs that also pull, never open and never slip; for tests of linear systems"},
+      {.name = "small_angle",
+       .kind = ParameterDescription::Kind::flag,
+       .unit = "",
+       .default_value = 0,
+       .description =
+           "carry the shear force by the small-angle forms of eqs. 1.11-1.12, not by exact rotations"},
+  }};
+
+  /// Whether this class is the one for these parameters (see linear_frictionless.hpp).
+  static bool serves(std::span<const double> /*values*/) { return true; }
+  static Linear from_values(std::span<const double> values) {
+    return Linear({.kn = values[0],
+                   .ks = values[1],
+                   .friction = values[2],
+                   .tension = values[3] != 0,
+                   .small_angle = values[4] != 0});
   }
 
  private:
