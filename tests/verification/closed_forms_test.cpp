@@ -108,15 +108,24 @@ TEST(ClosedForm, ChainOfTwoMasses) {
   expect_spectrum(System(builder), expected, 1e-10);
 }
 
-TEST(ClosedForm, TransverseChainWithRotation) {
+/// The transverse waves of a periodic chain of n: one zero and (k_s/m)(c0 + c1 cos q) a wave number.
+void expect_transverse_chain(double inertia, double c0, double c1) {
   constexpr int n = 12;
   const double ks = 1;
   // Only u_y and θ_z free, so that the axial and the other transverse branch stay out.
   const model::FixedComponents in_plane(0b011101);
-  const System s(make_lattice(chain(), {.kn = 1e-3, .ks = ks}, {n, 1, 1}, in_plane));
+  assembly::Model model = make_lattice(chain(), {.kn = 1e-3, .ks = ks}, {n, 1, 1}, in_plane).build();
+  for (double& i : model.bodies.inertia) i = inertia;
   std::vector<double> expected(n, 0.0);
-  for (int j = 0; j < n; ++j) expected.push_back(ks * (7 + 3 * std::cos(2 * pi * j / n)));
-  expect_spectrum(s, expected, 1e-10);
+  for (int j = 0; j < n; ++j) expected.push_back(ks * (c0 + c1 * std::cos(2 * pi * j / n)));
+  expect_spectrum(System(std::move(model)), expected, 1e-10);
+}
+
+TEST(ClosedForm, TransverseChainOfSpheres) {
+  expect_transverse_chain(0.4, 7, 3);
+}
+TEST(ClosedForm, TransverseChainOfDisks) {
+  expect_transverse_chain(0.5, 6, 2);
 }
 
 /// λ_max·m of an infinite lattice in closed form, with k_n = 1, s = k_s/k_n.
