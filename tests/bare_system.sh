@@ -61,7 +61,7 @@ mount_in devpts /dev/pts
 
 git clone --quiet --no-hardlinks "$source" "$root/root/eigengrain"
 for command in "${commands[@]}"; do
-  step "$command at $(git -C "$source" rev-parse --short HEAD)"
+  step "$command at $(git -C "$root/root/eigengrain" rev-parse --short HEAD)"
   # From another folder, as nobody promises that one stands in the right one.
   env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root chroot "$root" "/root/eigengrain/$command"
 done
