@@ -22,6 +22,7 @@ std::uint64_t spread_bits(std::uint64_t v) {
 template <class T>
 std::vector<T> gather(const std::vector<T>& column, std::span<const std::int32_t> order) {
   std::vector<T> result;
+  if (column.empty()) return result;  // a column that the scene does not need
   result.reserve(order.size());
   for (const std::int32_t row : order) result.push_back(column[row]);
   return result;
@@ -44,7 +45,9 @@ Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
           .mass = gather(bodies.mass, order),
           .inertia = gather(bodies.inertia, order),
           .material = gather(bodies.material, order),
-          .fixed = gather(bodies.fixed, order)};
+          .fixed = gather(bodies.fixed, order),
+          .velocity = gather(bodies.velocity, order),
+          .spin = gather(bodies.spin, order)};
 }
 
 void sort_along_curve(Bodies& bodies) {

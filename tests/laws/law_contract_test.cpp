@@ -19,12 +19,18 @@ struct Specimens;
 
 template <>
 struct Specimens<LinearFrictionless> {
-  static std::vector<std::vector<double>> values() { return {{2.0, 0.0, 0.0, 0, 0}, {2.0, 1.0, 0.0, 0, 0}}; }
+  static std::vector<std::vector<double>> values() {
+    return {{2.0, 0.0, 0.0, 0, 0, 0}, {2.0, 1.0, 0.0, 0, 0, 0}};
+  }
 };
 template <>
 struct Specimens<Linear> {
   static std::vector<std::vector<double>> values() {
-    return {{2.0, 1.5, 0.3, 0, 0}, {2.0, 0.5, 0.8, 0, 1}, {2.0, 1.5, 0.0, 1, 0}, {2.0, 0.0, 0.0, 1, 0}};
+    return {{2.0, 1.5, 0.3, 0, 0, 0},
+            {2.0, 0.5, 0.8, 0, 1, 0},
+            {2.0, 0.5, 0.8, 0, 1, 1},
+            {2.0, 1.5, 0.0, 1, 0, 0},
+            {2.0, 0.0, 0.0, 1, 0, 0}};
   }
 };
 
@@ -222,7 +228,7 @@ TEST(Linear, ForgetsItsShearWhenItOpens) {
   ASSERT_GT(sheared.shear.norm(), 0);
   Linear::State open;
   law.evaluate({.normal = n, .overlap = -0.1}, sheared, open);
-  EXPECT_FALSE(open.formed);
+  EXPECT_FALSE(open.formed());
   Linear::State again;
   const ContactForce f = law.evaluate({.normal = n, .overlap = 0.1, .displacement = {1, 0, 0}}, open, again);
   EXPECT_EQ(f.force, Vec3(0, 0, 0.2));
@@ -234,7 +240,7 @@ TEST(Linear, PullsAndNeverSlipsWithTension) {
   Linear::State next;
   const ContactForce f = law.evaluate(moved(n, 0.0, {1, 0, 0.5}), law.formed(n), next);
   EXPECT_EQ(f.force, Vec3(-1.5, 0, -1.0));
-  EXPECT_TRUE(next.formed);
+  EXPECT_TRUE(next.formed());
 }
 
 TEST(Linear, ShearStiffnessCountsOnlyWithFriction) {

@@ -29,7 +29,7 @@ class SceneBuilder {
     scene_.materials.push_back({"grain", 1.0});
     scene_.contacts.push_back({.law = "linear",
                                .parameters = {springs.kn, springs.ks, springs.ks > 0 ? 0.5 : 0.0,
-                                              springs.tension ? 1.0 : 0.0, 0.0}});
+                                              springs.tension ? 1.0 : 0.0, 0.0, 0.0}});
     scene_.local_damping = 0;
   }
 

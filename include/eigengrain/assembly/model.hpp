@@ -24,9 +24,11 @@ struct Model {
   }
 };
 
-/// Sorts the bodies, finds the contacts that act at the scene's positions and puts them into groups; their
-/// states are those of contacts that have just formed. Throws InputError where two centres coincide or no
-/// rule exists for a pair that touches.
-Model build_model(const model::Scene& scene);
+/// Sorts the bodies, finds the contacts at the scene's positions (see list_contacts) and puts them into
+/// groups; where they touch, their states are those of contacts that have just formed. Throws InputError
+/// where two centres coincide or no rule exists for a pair that touches.
+///
+/// reach  also pairs that are no more than this apart, m
+Model build_model(const model::Scene& scene, double reach = 0.0);
 
 }  // namespace eigengrain::assembly

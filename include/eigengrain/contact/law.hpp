@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 /// The contract between a contact and its law (docs/add-a-law.md).
 ///
@@ -71,6 +72,20 @@ struct ParameterDescription {
   std::string_view description;
 };
 
+/// One part of a law's state, as files see it. A state is plain doubles, part after part.
+struct StateField {
+  std::string_view name;
+  std::string_view unit;  ///< SI; empty for a pure number
+  int components = 1;     ///< 1 or 3
+};
+
+/// Numbers in a state with these parts.
+constexpr std::size_t state_numbers(std::span<const StateField> fields) {
+  std::size_t count = 0;
+  for (const StateField& field : fields) count += static_cast<std::size_t>(field.components);
+  return count;
+}
+
 /// A law: a state that belongs to each contact (may be empty) and pure functions of motion and old state.
 template <class L>
 concept ContactLaw = requires(const L& law, const ContactMotion& motion, const typename L::State& state,
@@ -80,6 +95,10 @@ concept ContactLaw = requires(const L& law, const ContactMotion& motion, const t
   { L::parameters } -> std::convertible_to<std::span<const ParameterDescription>>;
   /// Builds the law from values in the order of its parameters.
   { L::from_values(values) } -> std::same_as<L>;
+  /// The parts of State, in its order.
+  { L::state_fields } -> std::convertible_to<std::span<const StateField>>;
+  requires std::is_empty_v<typename L::State> ||
+      sizeof(typename L::State) == sizeof(double) * state_numbers(L::state_fields);
   /// Whether this class is the one for these values, where several share a name.
   { L::serves(values) } -> std::same_as<bool>;
   /// The state of a contact that forms with this normal.
@@ -93,6 +112,8 @@ concept ContactLaw = requires(const L& law, const ContactMotion& motion, const t
   { law.tangent(motion, state) } -> std::same_as<ContactTangent>;
   /// Elastic energy stored after the motion, J.
   { law.energy(motion, state) } -> std::same_as<double>;
+  /// Whether the increments are wanted with the geometry of the middle of the step (contact/kinematics.hpp).
+  { law.mid_step() } -> std::same_as<bool>;
   /// Whether any contact of the law can ever have shear or rotational stiffness.
   { law.needs_rotation() } -> std::same_as<bool>;
 };

@@ -42,9 +42,27 @@ struct TimestepChoice {
   std::optional<double> dt;  ///< s, with policy fixed
 };
 
+/// When a run ends: at the first of these; all count from the start of the scene.
 struct RunChoice {
   std::optional<std::int64_t> steps;
+  std::optional<double> time;        ///< s
   std::optional<double> unbalanced;  ///< stop below this mean unbalanced ratio
+};
+
+/// A table that a run writes, a line every so many steps.
+struct History {
+  std::string file;                 ///< CSV, in the folder of results
+  std::int64_t every = 1;           ///< steps
+  bool energies = false;            ///< kinetic, elastic, gravitational
+  bool unbalanced = false;          ///< mean and maximum of the ratio
+  bool walls = false;               ///< force on each wall
+  std::vector<std::int64_t> balls;  ///< identities: position, velocity, spin
+};
+
+/// What else a run writes; 0: nothing of it.
+struct OutputChoice {
+  std::int64_t checkpoint_every = 0;  ///< steps between states
+  std::int64_t series_every = 0;      ///< steps between frames for ParaView
 };
 
 struct Scene {
@@ -58,6 +76,9 @@ struct Scene {
   double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47
   TimestepChoice timestep;
   RunChoice run;
+  std::vector<History> histories;
+  OutputChoice outputs;
+  std::string document;  ///< what the file and the overrides said, without the balls, as a scene document
   std::vector<std::string> notes;  ///< what the reader found odd, though it is no mistake
 
   /// Index into `contacts` of the rule for two materials, or -1.

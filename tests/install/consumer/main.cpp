@@ -24,7 +24,8 @@ constexpr double stiffness = 1e5;  // N/m
 model::Scene two_balls() {
   model::Scene scene;
   scene.materials = {{.name = "grain", .density = density}};
-  scene.contacts = {{.law = "linear", .parameters = {stiffness, 0, 0, 0, 0}}};  // kn; no shear, no friction
+  scene.contacts = {
+      {.law = "linear", .parameters = {stiffness, 0, 0, 0, 0, 0}}};  // kn; no shear, no friction
   model::Bodies& bodies = scene.bodies;
   const double mass = model::sphere_mass(radius, density);
   for (const double x : {0.0, 1.99 * radius}) {

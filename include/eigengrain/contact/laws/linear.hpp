@@ -27,13 +27,18 @@ class Linear {
     double friction = 0;  ///< μ
     bool tension = false;
     bool small_angle = false;
+    bool end_step = false;
   };
 
   struct State {
     Vec3 shear = Vec3::Zero();   ///< F_s, N, of the first side on the second
-    Vec3 normal = Vec3::Zero();  ///< n at the committed state
-    bool formed = false;
+    Vec3 normal = Vec3::Zero();  ///< n at the committed state; zero: the contact has not formed
+
+    bool formed() const { return !normal.isZero(0); }
   };
+  static constexpr std::array<StateField, 2> state_fields{
+      {{.name = "shear_force", .unit = "N", .components = 3},
+       {.name = "normal", .unit = "", .components = 3}}};
 
   explicit Linear(const Params& params) : params_(params) {
     if (params_.friction <= 0 && !params_.tension) params_.ks = 0;
@@ -41,12 +46,14 @@ class Linear {
 
   bool tension() const { return params_.tension; }
   bool needs_rotation() const { return params_.ks > 0; }
+  /// Without shear nothing depends on the increments.
+  bool mid_step() const { return params_.ks > 0 && !params_.end_step; }
 
   /// The state of a contact that forms with normal n.
-  State formed(const Vec3& n) const { return {.normal = n, .formed = true}; }
+  State formed(const Vec3& n) const { return {.normal = n}; }
 
   bool acts(const ContactMotion& motion, const State& old) const {
-    return motion.overlap > 0 || (params_.tension && old.formed);
+    return motion.overlap > 0 || (params_.tension && old.formed());
   }
 
   ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
@@ -93,7 +100,7 @@ class Linear {
   static constexpr std::string_view name = "linear";
   static constexpr std::string_view description =
       "linear normal and shear springs of the pair, with Coulomb slip";
-  static constexpr std::array<ParameterDescription, 5> parameters{{
+  static constexpr std::array<ParameterDescription, 6> parameters{{
       {.name = "kn",
        .unit = "N/m",
        .minimum = 0,
@@ -117,6 +124,12 @@ class Linear {
        .default_value = 0,
        .description =
            "carry the shear force by the small-angle forms of eqs. 1.11-1.12, not by exact rotations"},
+      {.name = "end_step",
+       .kind = ParameterDescription::Kind::flag,
+       .unit = "",
+       .default_value = 0,
+       .description = "measure shear increments with the geometry at the end of the step, as PFC3D does, not "
+                      "of its middle"},
   }};
 
   /// Whether this class is the one for these parameters (see linear_frictionless.hpp).
@@ -126,13 +139,14 @@ class Linear {
                    .ks = values[1],
                    .friction = values[2],
                    .tension = values[3] != 0,
-                   .small_angle = values[4] != 0});
+                   .small_angle = values[4] != 0,
+                   .end_step = values[5] != 0});
   }
 
  private:
   /// Shear force before the slip check. Zero in the step in which the contact forms.
   Vec3 trial_shear(const ContactMotion& motion, const State& old) const {
-    if (!old.formed || params_.ks <= 0) return Vec3::Zero();
+    if (params_.ks <= 0 || !old.formed()) return Vec3::Zero();
     const Vec3& n = motion.normal;
     const Vec3 carried = params_.small_angle
                              ? carry_shear_small_angle(old.shear, old.normal, n, motion.mean_rotation)

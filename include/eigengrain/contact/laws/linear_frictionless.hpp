@@ -2,6 +2,7 @@
 
 #include "eigengrain/contact/laws/linear.hpp"
 
+#include <array>
 #include <span>
 
 namespace eigengrain::contact {
@@ -11,6 +12,7 @@ namespace eigengrain::contact {
 class LinearFrictionless {
  public:
   struct State {};
+  static constexpr std::array<StateField, 0> state_fields{};
 
   static constexpr auto name = Linear::name;
   static constexpr auto description = Linear::description;
@@ -27,6 +29,7 @@ class LinearFrictionless {
   explicit LinearFrictionless(double kn) : kn_(kn) {}
 
   bool needs_rotation() const { return false; }
+  static constexpr bool mid_step() { return false; }
   State formed(const Vec3& /*normal*/) const { return {}; }
 
   bool acts(const ContactMotion& motion, const State& /*old*/) const { return motion.overlap > 0; }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "eigengrain/assembly/model.hpp"
+
+#include <string_view>
+
+/// Which contacts a model has, from where its bodies are.
+namespace eigengrain::assembly {
+
+/// An empty group for a rule: of the kinematics of that name and the first type of the law table that bears
+/// the rule's law and serves its parameters. `index` is the rule's place in Scene::contacts. Throws
+/// InputError for a law, a kinematics or a number of parameters that do not exist.
+contact::AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, std::int32_t index);
+
+/// Replaces the contacts of the model by all pairs whose surfaces are no more than `reach` apart (m); with
+/// reach 0 the pairs that touch, which count as formed. A contact that was there keeps its history, and one
+/// that still acts stays even beyond the reach. In a periodic cell, centres are wrapped into the cell first.
+///
+/// In each group contacts are sorted by a, then b, then image. Throws InputError where two centres coincide
+/// or no rule of the scene exists for a pair.
+void list_contacts(Model& model, const model::Scene& scene, double reach);
+
+}  // namespace eigengrain::assembly

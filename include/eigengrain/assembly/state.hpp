@@ -1,0 +1,35 @@
+#pragma once
+
+#include "eigengrain/assembly/model.hpp"
+#include "eigengrain/model/scene.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace eigengrain::assembly {
+
+/// Which pairs the contacts were listed for: all that were no more than `skin` apart when the bodies were at
+/// `position`. The list holds until some body has moved by half the skin.
+struct NeighbourList {
+  double skin = 0;             ///< m
+  std::vector<Vec3> position;  ///< [bodies] where they were when the list was made, m
+  std::int64_t rebuilds = 0;   ///< lists made since the start
+};
+
+/// A model in motion: all that the explicit cycle continues from, to the bit. Positions, contacts with their
+/// history and forces belong to time t, velocities to t - dt/2 (leapfrog).
+struct State {
+  model::Scene settings;     ///< what the user asked for, without its bodies
+  Model model;               ///< velocity always there; spin only where something turns
+  std::vector<Vec3> force;   ///< [bodies] of contacts, gravity left out, at t, N
+  std::vector<Vec3> moment;  ///< [bodies] about the centres, N m; empty where nothing turns
+  NeighbourList list;
+  double time = 0;        ///< t, s
+  std::int64_t step = 0;  ///< cycles since the start
+  double dt = 0;          ///< of the last cycle, s; 0 before the first
+  double next_dt = 0;     ///< that the timestep policy chose for the next one, s
+
+  bool turns() const { return !model.bodies.spin.empty(); }
+};
+
+}  // namespace eigengrain::assembly

@@ -1,0 +1,234 @@
+#include "eigengrain/assembly/contact_list.hpp"
+
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/search/candidates.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+namespace eigengrain::assembly {
+namespace {
+
+using contact::AnyGroup;
+using contact::ContactGroup;
+using contact::Pair;
+
+template <class Kinematics>
+AnyGroup new_group(const model::ContactRule& rule, std::int32_t index) {
+  std::optional<AnyGroup> group;
+  for_each_type(contact::LawTypes{}, [&](auto tag) {
+    using Law = typename decltype(tag)::type;
+    if (group || Law::name != rule.law) return;
+    if (rule.parameters.size() != Law::parameters.size())
+      throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
+                                   rule.parameters.size(), Law::name, Law::parameters.size()));
+    if (Law::serves(rule.parameters))
+      group = ContactGroup<Kinematics, Law>{Law::from_values(rule.parameters), index, {}, {}};
+  });
+  if (!group) throw InputError(fmt::format("contacts[{}]: there is no law \"{}\"", index, rule.law));
+  return std::move(*group);
+}
+
+/// Rule for each pair of materials, looked up once: [materials × materials], -1 where none.
+class RuleTable {
+ public:
+  explicit RuleTable(const model::Scene& scene) : materials_(scene.materials.size()) {
+    for (std::size_t a = 0; a < materials_; ++a)
+      for (std::size_t b = 0; b < materials_; ++b)
+        rules_.push_back(scene.rule_for(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)));
+  }
+  std::int32_t operator()(std::int32_t a, std::int32_t b) const {
+    return rules_[static_cast<std::size_t>(a) * materials_ + static_cast<std::size_t>(b)];
+  }
+
+ private:
+  std::size_t materials_;
+  std::vector<std::int32_t> rules_;
+};
+
+/// Sorts pairs by the rule that holds for them; a pair whose law is "none" is left out.
+class PairsByRule {
+ public:
+  explicit PairsByRule(const model::Scene& scene)
+      : scene_(scene), rule_of_(scene), pairs_(scene.contacts.size()) {}
+
+  void add(const Pair& pair, std::int32_t material_a, std::int32_t material_b) {
+    const std::int32_t rule = rule_of_(material_a, material_b);
+    if (rule < 0) throw InputError(missing_rule(material_a, material_b));
+    if (scene_.contacts[rule].law != "none") pairs_[rule].push_back(pair);
+  }
+  std::vector<Pair>& of(std::int32_t rule) { return pairs_[rule]; }
+
+ private:
+  std::string missing_rule(std::int32_t a, std::int32_t b) const {
+    const auto name = [&](std::int32_t m) { return scene_.materials[m].name; };
+    return fmt::format("no entry of contacts matches {} and {}, which touch; add one with between: [{}, {}]",
+                       name(a), name(b), name(a), name(b));
+  }
+
+  const model::Scene& scene_;
+  RuleTable rule_of_;
+  std::vector<std::vector<Pair>> pairs_;
+};
+
+PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, double reach) {
+  const model::Bodies& bodies = model.bodies;
+  PairsByRule result(scene);
+  for (const search::CandidatePair& found :
+       search::candidate_pairs(bodies.position, bodies.radius, model.cell, reach)) {
+    const auto a = static_cast<std::size_t>(found.a);
+    const auto b = static_cast<std::size_t>(found.b);
+    if (bodies.position[b] + model.cell.shift(found.image) == bodies.position[a])
+      throw InputError(fmt::format("balls {} and {} have the same centre ({}, {}, {}); move one of them",
+                                   bodies.identity[a], bodies.identity[b], bodies.position[a].x(),
+                                   bodies.position[a].y(), bodies.position[a].z()));
+    result.add({found.a, found.b, found.image}, bodies.material[a], bodies.material[b]);
+  }
+  return result;
+}
+
+PairsByRule ball_wall_pairs(const model::Scene& scene, const Model& model, double reach) {
+  const model::Bodies& bodies = model.bodies;
+  PairsByRule result(scene);
+  for (std::int32_t i = 0; i < bodies.size(); ++i) {
+    const auto ball = static_cast<std::size_t>(i);
+    for (std::size_t w = 0; w < model.walls.size(); ++w) {
+      const model::Plane& wall = model.walls[w];
+      if ((bodies.position[ball] - wall.point).dot(wall.normal) > bodies.radius[ball] + reach) continue;
+      result.add({i, static_cast<std::int32_t>(w), {}}, bodies.material[ball], wall.material);
+    }
+  }
+  return result;
+}
+
+bool precedes(const Pair& left, const Pair& right) {
+  return std::tie(left.a, left.b, left.image) < std::tie(right.a, right.b, right.image);
+}
+
+/// Fills an empty group from the pairs found and the group that was there before; both are sorted.
+template <class Group>
+void fill(Group& group, const Group* before, const std::vector<Pair>& found, const Model& model,
+          bool touching_only) {
+  using Kinematics = typename Group::KinematicsType;
+  using State = typename Group::State;
+  const contact::Placement placement = model.placement();
+  const auto acts = [&](const Pair& pair, const State& state) {
+    return group.law.acts(contact::at_rest(Kinematics::geometry(placement, pair)), state);
+  };
+  const auto add = [&](const Pair& pair, const State& state) {
+    group.pairs.push_back(pair);
+    group.states.push_back(state);
+  };
+  const auto add_new = [&](const Pair& pair) {
+    const contact::ContactMotion motion = contact::at_rest(Kinematics::geometry(placement, pair));
+    if (group.law.acts(motion, State{}))
+      add(pair, group.law.formed(motion.normal));
+    else if (!touching_only)
+      add(pair, State{});
+  };
+  group.pairs.reserve(found.size());
+  group.states.reserve(found.size());
+  std::size_t old = 0;
+  const std::size_t olds = before != nullptr ? before->pairs.size() : 0;
+  const auto keep_lost_until = [&](const Pair* next) {
+    for (; old < olds && (next == nullptr || precedes(before->pairs[old], *next)); ++old)
+      if (acts(before->pairs[old], before->states[old])) add(before->pairs[old], before->states[old]);
+  };
+  for (const Pair& pair : found) {
+    keep_lost_until(&pair);
+    if (old < olds && !precedes(pair, before->pairs[old]))
+      add(pair, before->states[old++]);
+    else
+      add_new(pair);
+  }
+  keep_lost_until(nullptr);
+}
+
+template <class Kinematics>
+void list_kind(PairsByRule pairs, const model::Scene& scene, const contact::Contacts& before, Model& model,
+               bool touching_only) {
+  for (std::int32_t rule = 0; rule < static_cast<std::int32_t>(scene.contacts.size()); ++rule) {
+    if (scene.contacts[rule].law == "none") continue;
+    AnyGroup group = new_group<Kinematics>(scene.contacts[rule], rule);
+    const bool some = std::visit(
+        [&](auto& concrete) {
+          using Group = std::decay_t<decltype(concrete)>;
+          const Group* old = nullptr;
+          for (const AnyGroup& candidate : before.groups)
+            if (const auto* same = std::get_if<Group>(&candidate); same != nullptr && same->rule == rule)
+              old = same;
+          fill(concrete, old, pairs.of(rule), model, touching_only);
+          return !concrete.pairs.empty();
+        },
+        group);
+    if (some) model.contacts.groups.push_back(std::move(group));
+  }
+}
+
+/// Moves the centres into the cell, and the images of the contacts with them.
+void wrap(Model& model) {
+  const model::PeriodicCell& cell = model.cell;
+  if (!cell.any()) return;
+  std::vector<std::array<int, 3>> moved(model.bodies.position.size());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    Vec3& x = model.bodies.position[i];
+    for (int k = 0; k < 3; ++k) {
+      if (!cell.periodic[k]) continue;
+      moved[i][k] = static_cast<int>(std::floor((x[k] - cell.origin[k]) / cell.lengths[k]));
+      x[k] -= moved[i][k] * cell.lengths[k];
+    }
+  }
+  model.contacts.for_each_group([&](auto& group) {
+    if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body) {
+      for (Pair& pair : group.pairs)
+        for (std::size_t k = 0; k < 3; ++k)
+          pair.image[k] = static_cast<std::int8_t>(pair.image[k] + moved[pair.b][k] - moved[pair.a][k]);
+    }
+  });
+}
+
+/// Wrapping changes images, which are a part of the order.
+template <class Group>
+void sort_contacts(Group& group) {
+  if (std::is_sorted(group.pairs.begin(), group.pairs.end(), precedes)) return;
+  std::vector<std::size_t> order(group.pairs.size());
+  for (std::size_t c = 0; c < order.size(); ++c) order[c] = c;
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t l, std::size_t r) { return precedes(group.pairs[l], group.pairs[r]); });
+  Group sorted{group.law, group.rule, {}, {}};
+  for (const std::size_t c : order) {
+    sorted.pairs.push_back(group.pairs[c]);
+    sorted.states.push_back(group.states[c]);
+  }
+  group = std::move(sorted);
+}
+
+}  // namespace
+
+AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, std::int32_t index) {
+  std::optional<AnyGroup> group;
+  for_each_type(contact::KinematicsTypes{}, [&](auto tag) {
+    using Kinematics = typename decltype(tag)::type;
+    if (Kinematics::name == kinematics) group = new_group<Kinematics>(rule, index);
+  });
+  if (!group) throw InputError(fmt::format("there is no contact kinematics \"{}\"", kinematics));
+  return std::move(*group);
+}
+
+void list_contacts(Model& model, const model::Scene& scene, double reach) {
+  wrap(model);
+  contact::Contacts before = std::exchange(model.contacts, {});
+  before.for_each_group([](auto& group) { sort_contacts(group); });
+  const bool touching_only = reach <= 0;
+  list_kind<contact::BallBall>(ball_ball_pairs(scene, model, reach), scene, before, model, touching_only);
+  list_kind<contact::BallPlane>(ball_wall_pairs(scene, model, reach), scene, before, model, touching_only);
+}
+
+}  // namespace eigengrain::assembly
