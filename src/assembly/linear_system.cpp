@@ -1,7 +1,5 @@
 #include "eigengrain/assembly/linear_system.hpp"
 
-#include "eigengrain/assembly/stiffness.hpp"
-
 #include <cmath>
 
 namespace eigengrain::assembly {
@@ -20,8 +18,8 @@ std::vector<double> mass_diagonal(const model::Bodies& bodies, const Unknowns& u
 
 }  // namespace
 
-LinearSystem::LinearSystem(const Model& model)
-    : elements(contact_elements(model)),
+LinearSystem::LinearSystem(const Model& model, Listed which)
+    : elements(contact_elements(model, which)),
       unknowns(model.bodies, elements),
       mass(mass_diagonal(model.bodies, unknowns)) {}
 

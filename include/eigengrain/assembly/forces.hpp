@@ -2,6 +2,8 @@
 
 #include "eigengrain/assembly/model.hpp"
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace eigengrain::assembly {
@@ -12,21 +14,74 @@ struct Displacement {
   std::vector<Vec3> rotation;     ///< [bodies] θ, rad; or empty
 };
 
+/// Where bodies are and how they came there from the committed state: by u = duration · velocity and
+/// θ = duration · spin. The cycle passes its velocities and its step; displacements are velocities for a
+/// duration of one.
+struct Trial {
+  std::span<const Vec3> position;  ///< [bodies] committed position + u, m
+  std::span<const Vec3> velocity;  ///< [bodies]
+  std::span<const Vec3> spin;      ///< [bodies]; or empty: nothing turns
+  double duration = 1;
+};
+
 /// What the contacts exert on every body: force (N) and moment about its centre (N m).
 struct BodyForces {
   std::vector<Vec3> force;
-  std::vector<Vec3> moment;
+  std::vector<Vec3> moment;  ///< empty where nothing turns
 };
 
-/// Contact forces after a trial displacement. Nothing is stored in the contacts: the same call with the same
-/// displacement gives the same forces. Summed on each body in the order of its contacts, so that the result
-/// does not depend on the number of threads.
+/// The sum of contact forces on every body, for one contact graph: the work of the explicit cycle and of a
+/// residual. Threads share fixed chunks of bodies; a contact is evaluated once, in the chunk of its first
+/// body, and what it does to a body of another chunk is kept and added in the end. So every sum has one order
+/// (the order of the contacts), and the result is the same to the bit on any number of threads. Nothing is
+/// allocated after construction. Cost O(contacts).
+class ContactForceSum {
+ public:
+  /// turns  whether moments are wanted
+  ContactForceSum(const Model& model, bool turns);
+
+  /// Forces after a trial displacement. Nothing is stored in the contacts: the same call with the same
+  /// displacement gives the same forces.
+  void evaluate(const Model& model, const Trial& trial, BodyForces& sum);
+  /// The same, and the contacts remember: the trial displacement becomes the committed state.
+  void advance(Model& model, const Trial& trial, BodyForces& sum);
+
+ private:
+  /// A group's contacts by chunk of their first body, and where each puts its force on a body elsewhere.
+  struct GroupPlan {
+    std::vector<std::int64_t> starts;  ///< [chunks + 1]
+    std::vector<std::int32_t> slot;    ///< [contacts] into foreign_force_, or own_chunk; empty for walls
+  };
+  static constexpr std::int32_t own_chunk = -1;
+
+  template <bool turns, bool commit, class ModelRef>
+  void sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum);
+  template <bool turns, bool commit, class Group>
+  void sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement, const Trial& trial,
+                 BodyForces& sum);
+  void add_foreign(BodyForces& sum) const;
+
+  std::int64_t chunk_size_ = 0;
+  bool turns_ = false;
+  std::vector<GroupPlan> plans_;
+  std::vector<std::int32_t> foreign_starts_;  ///< [bodies + 1] slots of a body
+  std::vector<Vec3> foreign_force_;           ///< [slots]
+  std::vector<Vec3> foreign_moment_;
+};
+
+/// Contact forces after a trial displacement. Nothing is stored in the contacts.
 BodyForces contact_forces(const Model& model, const Displacement& displacement);
 
 /// Contact forces of the model as it stands.
 BodyForces contact_forces(const Model& model);
 
-/// Elastic energy of all contacts after a trial displacement, J.
+/// Elastic energy of all contacts after a trial displacement, J. Summed in chunks of contacts.
 double elastic_energy(const Model& model, const Displacement& displacement);
+
+/// Elastic energy of all contacts of the model as it stands, J.
+double elastic_energy(const Model& model);
+
+/// Force of the bodies on each wall of the model as it stands [walls], N.
+std::vector<Vec3> wall_forces(const Model& model);
 
 }  // namespace eigengrain::assembly

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/stiffness.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 #include "eigengrain/contact/element.hpp"
 
@@ -11,7 +12,7 @@ namespace eigengrain::assembly {
 /// K and M of a model as it stands, K factored into its contacts: what estimates, bounds and solvers are
 /// asked about. It owns what it holds; the model may go.
 struct LinearSystem {
-  explicit LinearSystem(const Model& model);
+  explicit LinearSystem(const Model& model, Listed which = Listed::acting);
 
   std::vector<contact::ContactElement> elements;
   Unknowns unknowns;

@@ -14,17 +14,20 @@ concept StiffnessSink = requires(S& sink, const contact::ContactElement& element
   sink.add(element);
 };
 
-/// Hands the elastic stiffness of every acting contact to the sink, group after group, in the order of
-/// the contacts. Does not know what the sink fills. Cost O(contacts); nothing is allocated here.
+/// Which of the listed contacts count: those that act now, or all, as if those that are near acted too.
+enum class Listed { acting, all };
+
+/// Hands the elastic stiffness of every contact to the sink, group after group, in the order of the contacts.
+/// Does not know what the sink fills. Cost O(contacts); nothing is allocated here.
 template <StiffnessSink Sink>
-void assemble_stiffness(const Model& model, Sink& sink) {
+void assemble_stiffness(const Model& model, Sink& sink, Listed which = Listed::acting) {
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
       const contact::ContactMotion motion = contact::at_rest(geometry);
-      if (!group.law.acts(motion, group.states[c])) continue;
+      if (which == Listed::acting && !group.law.acts(motion, group.states[c])) continue;
       sink.add(contact::ContactElement{
           .a = group.pairs[c].a,
           .b = Kinematics::second_is_body ? group.pairs[c].b : contact::no_body,
@@ -43,11 +46,12 @@ struct ElementList {
   void add(const contact::ContactElement& element) { elements.push_back(element); }
 };
 
-/// The stiffness of all acting contacts as a list.
-inline std::vector<contact::ContactElement> contact_elements(const Model& model) {
+/// The stiffness of the contacts as a list.
+inline std::vector<contact::ContactElement> contact_elements(const Model& model,
+                                                             Listed which = Listed::acting) {
   ElementList list;
   list.elements.reserve(static_cast<std::size_t>(model.contacts.size()));
-  assemble_stiffness(model, list);
+  assemble_stiffness(model, list, which);
   return std::move(list.elements);
 }
 

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/assembly/state.hpp"
+
+#include <cstdint>
+#include <functional>
+
+/// The explicit cycle: leapfrog (PFC3D eqs. 1.25-1.27) with local damping (eq. 1.47).
+namespace eigengrain::cycle {
+
+/// The step to take from a state on, s. It is asked before the first step, after every new list of contacts
+/// and every `every` steps (0: not in between), so that what adapts depends on counts alone.
+struct TimestepPolicy {
+  std::function<double(const assembly::State&)> dt;
+  std::int64_t every = 0;
+};
+
+/// A scene at rest in time: bodies sorted, near pairs listed, forces of the first moment. Velocities are
+/// those of the scene. Throws InputError as build_model does.
+assembly::State start(const model::Scene& scene);
+
+/// Steps a state through time.
+///
+///   force at t          F = Σ contacts + m g
+///   local damping       F_d = -α |F| sign(v₋), component by component
+///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
+///   position            x += v₊ Δt
+///   contacts            the list, where a body has moved by half the skin; forces from the new positions,
+///   the
+///                       increments v₊ Δt and the old history, which is committed at once
+///
+/// A state that starts has Δt_old = 0: its velocity v₀ at t = 0 becomes v₀ + ½Δt a₀ at the half step, which
+/// keeps the scheme at second order. The same program gives the same bits on any number of threads, and from
+/// a state that was saved and read again.
+class Cycle {
+ public:
+  /// Throws InputError where the policy finds no step.
+  Cycle(assembly::State state, TimestepPolicy policy);
+
+  void step();
+  void run(std::int64_t steps) {
+    for (std::int64_t k = 0; k < steps; ++k) step();
+  }
+
+  const assembly::State& state() const { return state_; }
+  /// The state, moved out; the cycle is over.
+  assembly::State release() { return std::move(state_); }
+
+ private:
+  /// Kick and drift of all bodies; the greatest squared way from where the list was made, m².
+  double move(double kick, double dt);
+  void list_anew();
+  void choose_timestep();
+
+  assembly::State state_;
+  TimestepPolicy policy_;
+  assembly::ContactForceSum forces_;
+};
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "eigengrain/assembly/state.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eigengrain::cycle {
+
+/// A run that has gone wrong: what was seen, and on which bodies.
+struct Trouble {
+  std::string what;                  ///< "not a number", "overlap", "speed" or "energy", with its value
+  std::vector<std::int64_t> bodies;  ///< identities, the worst first, at most five
+};
+
+/// Looks at a state now and then for the signs of a blow-up, early enough for an earlier state to be good:
+///   - a position, velocity or force that is not finite;
+///   - an overlap of more than half of the smaller radius (of the radius, at a wall);
+///   - a ball that moves by more than a tenth of its radius in a step: it may pass others unseen;
+///   - energy out of nothing: kinetic and elastic energy beyond a hundred times what there was and what
+///     gravity has released since. Below the limit of the undamped cycle a mode stays within 22.4 times its
+///     amplitude at 0.999 of the limit (500 times its energy); at ordinary steps within a few times.
+class Watch {
+ public:
+  explicit Watch(const assembly::State& state);
+  std::optional<Trouble> look(const assembly::State& state) const;
+
+ private:
+  double available_ = 0;      ///< kinetic and elastic energy at the start, J
+  double gravitational_ = 0;  ///< at the start, J
+};
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,145 @@
+#include "eigengrain/cycle/cycle.hpp"
+
+#include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace eigengrain::cycle {
+namespace {
+
+using assembly::State;
+
+/// Part of the mean radius that near pairs may be apart: in a settled bed it adds few pairs and lists last
+/// for thousands of steps.
+constexpr double skin_of_radius = 0.05;
+
+double mean_radius(const model::Bodies& bodies) {
+  return std::accumulate(bodies.radius.begin(), bodies.radius.end(), 0.0) / bodies.size();
+}
+
+bool something_turns(const assembly::Model& model, const model::Scene& scene) {
+  if (!model.bodies.spin.empty()) return true;
+  bool turns = false;
+  // Contacts may form later, so the rules decide and not the contacts.
+  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
+    if (scene.contacts[r].law == "none") continue;
+    const auto group =
+        assembly::new_group(contact::BallBall::name, scene.contacts[r], static_cast<std::int32_t>(r));
+    turns = turns || std::visit([](const auto& g) { return g.law.needs_rotation(); }, group);
+  }
+  return turns;
+}
+
+/// Changes the free components of a velocity by the damped force of its body.
+void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, double damping,
+          std::uint8_t fixed) {
+  for (int k = 0; k < 3; ++k) {
+    if (((fixed >> k) & 1) != 0) continue;
+    double f = force[k];
+    if (velocity[k] > 0)
+      f -= damping * std::abs(f);
+    else if (velocity[k] < 0)
+      f += damping * std::abs(f);
+    velocity[k] += duration * f / inertia;
+  }
+}
+
+/// A step chosen anew is taken where it is shorter or longer by more than this: a step that changes with
+/// every contact costs accuracy and gains nothing.
+constexpr double worth_a_change = 1.05;
+
+}  // namespace
+
+State start(const model::Scene& scene) {
+  State state;
+  state.settings = scene;
+  state.settings.bodies = {};
+  state.list.skin = skin_of_radius * mean_radius(scene.bodies);
+  state.model = assembly::build_model(scene, state.list.skin);
+  model::Bodies& bodies = state.model.bodies;
+  const auto count = static_cast<std::size_t>(bodies.size());
+  if (bodies.velocity.empty()) bodies.velocity.assign(count, Vec3::Zero());
+  if (bodies.spin.empty() && something_turns(state.model, scene)) bodies.spin.assign(count, Vec3::Zero());
+  state.list.position = bodies.position;
+
+  assembly::BodyForces forces;
+  assembly::ContactForceSum(state.model, state.turns())
+      .advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0}, forces);
+  state.force = std::move(forces.force);
+  state.moment = std::move(forces.moment);
+  return state;
+}
+
+Cycle::Cycle(State state, TimestepPolicy policy)
+    : state_(std::move(state)), policy_(std::move(policy)), forces_(state_.model, state_.turns()) {
+  if (state_.next_dt == 0) choose_timestep();
+}
+
+double Cycle::move(double duration, double dt) {
+  constexpr std::int64_t chunk_size = 1024;
+  model::Bodies& bodies = state_.model.bodies;
+  const double damping = state_.model.local_damping;
+  const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
+  std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
+  for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+    double way = 0;
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const model::FixedComponents fixed = bodies.fixed[i];
+      const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
+      kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation());
+      bodies.position[i] += dt * bodies.velocity[i];
+      if (state_.turns())
+        kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation());
+      // In this order not-a-number counts as far, and the list is renewed until somebody looks.
+      const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
+      way = squared <= way ? way : squared;
+    }
+    farthest[chunk] = way;
+  });
+  return *std::max_element(farthest.begin(), farthest.end());
+}
+
+void Cycle::list_anew() {
+  assembly::list_contacts(state_.model, state_.settings, state_.list.skin);
+  state_.list.position = state_.model.bodies.position;
+  ++state_.list.rebuilds;
+  forces_ = assembly::ContactForceSum(state_.model, state_.turns());
+}
+
+void Cycle::choose_timestep() {
+  const double chosen = policy_.dt(state_);
+  if (!(chosen > 0) || !std::isfinite(chosen))
+    throw InputError(fmt::format(
+        "the timestep policy finds no step ({} s): nothing in the scene resists a motion; give one with "
+        "timestep: {{policy: fixed, dt: ...}}",
+        chosen));
+  if (chosen < state_.next_dt || chosen > worth_a_change * state_.next_dt) state_.next_dt = chosen;
+}
+
+void Cycle::step() {
+  const double dt = state_.next_dt;
+  const double half_skin = 0.5 * state_.list.skin;
+  const bool expired = !(move(0.5 * (state_.dt + dt), dt) <= half_skin * half_skin);
+  if (expired) list_anew();
+
+  model::Bodies& bodies = state_.model.bodies;
+  assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
+  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt}, sum);
+  state_.force = std::move(sum.force);
+  state_.moment = std::move(sum.moment);
+
+  state_.dt = dt;
+  state_.time += dt;
+  ++state_.step;
+  if (expired || (policy_.every > 0 && state_.step % policy_.every == 0)) choose_timestep();
+}
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,119 @@
+#include "eigengrain/cycle/watch.hpp"
+
+#include "eigengrain/assembly/energies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace eigengrain::cycle {
+namespace {
+
+using assembly::State;
+
+constexpr std::size_t most_named = 5;
+constexpr double largest_overlap = 0.5;   // of the smaller radius
+constexpr double largest_way = 0.1;       // of the radius, in a step
+constexpr double largest_growth = 100.0;  // of the energy that can be explained
+
+/// Bodies with a number that tells how bad they are.
+class Ranking {
+ public:
+  void add(double badness, std::int64_t identity) { rows_.emplace_back(badness, identity); }
+  bool empty() const { return rows_.empty(); }
+  double worst() {
+    sort();
+    return rows_.front().first;
+  }
+  std::vector<std::int64_t> bodies() {
+    sort();
+    std::vector<std::int64_t> result;
+    for (const auto& [badness, identity] : rows_)
+      if (result.size() < most_named && std::find(result.begin(), result.end(), identity) == result.end())
+        result.push_back(identity);
+    return result;
+  }
+
+ private:
+  void sort() {
+    std::sort(rows_.begin(), rows_.end(), [](const auto& l, const auto& r) {
+      return l.first != r.first ? l.first > r.first : l.second < r.second;
+    });
+  }
+  std::vector<std::pair<double, std::int64_t>> rows_;
+};
+
+std::optional<Trouble> not_finite(const State& state) {
+  Ranking bad;
+  const model::Bodies& bodies = state.model.bodies;
+  for (std::size_t i = 0; i < bodies.position.size(); ++i)
+    if (!bodies.position[i].allFinite() || !bodies.velocity[i].allFinite() || !state.force[i].allFinite())
+      bad.add(0, bodies.identity[i]);
+  if (bad.empty()) return std::nullopt;
+  return Trouble{"not a number: a position, velocity or force is not finite", bad.bodies()};
+}
+
+std::optional<Trouble> too_fast(const State& state) {
+  Ranking bad;
+  const model::Bodies& bodies = state.model.bodies;
+  for (std::size_t i = 0; i < bodies.position.size(); ++i) {
+    const double way = bodies.velocity[i].norm() * state.dt / bodies.radius[i];
+    if (way > largest_way) bad.add(way, bodies.identity[i]);
+  }
+  if (bad.empty()) return std::nullopt;
+  const double worst = bad.worst();
+  return Trouble{fmt::format("speed: a ball moves by {:.3g} of its radius in one step", worst), bad.bodies()};
+}
+
+std::optional<Trouble> too_deep(const State& state) {
+  Ranking bad;
+  const model::Bodies& bodies = state.model.bodies;
+  const contact::Placement placement = state.model.placement();
+  state.model.contacts.for_each_group([&](const auto& group) {
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    for (const contact::Pair& pair : group.pairs) {
+      double radius = bodies.radius[pair.a];
+      if constexpr (Kinematics::second_is_body) radius = std::min(radius, bodies.radius[pair.b]);
+      const double depth = Kinematics::geometry(placement, pair).overlap / radius;
+      if (!(depth > largest_overlap)) continue;
+      bad.add(depth, bodies.identity[pair.a]);
+      if constexpr (Kinematics::second_is_body) bad.add(depth, bodies.identity[pair.b]);
+    }
+  });
+  if (bad.empty()) return std::nullopt;
+  const double worst = bad.worst();
+  return Trouble{fmt::format("overlap: {:.3g} of the smaller radius", worst), bad.bodies()};
+}
+
+Trouble energy_trouble(const State& state, double found, double explained) {
+  Ranking fastest;
+  const model::Bodies& bodies = state.model.bodies;
+  for (std::size_t i = 0; i < bodies.position.size(); ++i)
+    fastest.add(bodies.velocity[i].squaredNorm() * bodies.mass[i], bodies.identity[i]);
+  return {fmt::format("energy: kinetic and elastic energy of {:.3g} J, where {:.3g} J can be explained",
+                      found, explained),
+          fastest.bodies()};
+}
+
+}  // namespace
+
+Watch::Watch(const State& state) {
+  const assembly::Energies energies = assembly::energies_of(state);
+  available_ = energies.kinetic + energies.elastic;
+  gravitational_ = energies.gravitational;
+}
+
+std::optional<Trouble> Watch::look(const State& state) const {
+  if (auto trouble = not_finite(state)) return trouble;
+  if (auto trouble = too_deep(state)) return trouble;
+  if (auto trouble = too_fast(state)) return trouble;
+  const assembly::Energies energies = assembly::energies_of(state);
+  const double found = energies.kinetic + energies.elastic;
+  const double explained = available_ + std::max(0.0, gravitational_ - energies.gravitational);
+  if (!(found <= largest_growth * explained)) return energy_trouble(state, found, explained);
+  return std::nullopt;
+}
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,111 @@
+#include "eigengrain/assembly/balance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace eigengrain::assembly {
+namespace {
+
+/// What the acting contacts of a body add up to.
+struct Touch {
+  std::int32_t contacts = 0;
+  double rounding = 0;  ///< variance of the force that rounded positions make, N²
+};
+
+/// Sums over the acting contacts.
+struct Survey {
+  std::vector<Touch> touch;  ///< [bodies]
+  std::int64_t contacts = 0;
+  double force = 0;  ///< sum of magnitudes, N
+};
+
+/// Variance of a coordinate's rounding along n, m²: an ulp is spread evenly over [-½, ½].
+double rounding_along(const Vec3& n, const Vec3& x) {
+  const auto ulp = [](double c) {
+    return c == 0 ? 0.0 : std::scalbn(std::numeric_limits<double>::epsilon(), std::ilogb(c));
+  };
+  return n.cwiseProduct(Vec3(x.unaryExpr(ulp))).squaredNorm() / 12;
+}
+
+Survey survey(const Model& model) {
+  Survey result{std::vector<Touch>(static_cast<std::size_t>(model.bodies.size())), 0, 0.0};
+  const contact::Placement placement = model.placement();
+  model.contacts.for_each_group([&](const auto& group) {
+    using Group = std::decay_t<decltype(group)>;
+    using Kinematics = typename Group::KinematicsType;
+    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      const contact::Pair& pair = group.pairs[c];
+      const contact::ContactMotion motion = contact::at_rest(Kinematics::geometry(placement, pair));
+      if (!group.law.acts(motion, group.states[c])) continue;
+      typename Group::State discarded;
+      result.force += group.law.evaluate(motion, group.states[c], discarded).force.norm();
+      ++result.contacts;
+      const double k = group.law.stiffness(motion, group.states[c]).normal;
+      double rounding = rounding_along(motion.normal, model.bodies.position[pair.a]);
+      if constexpr (Kinematics::second_is_body)
+        rounding += rounding_along(motion.normal, model.bodies.position[pair.b]);
+      const auto add = [&](std::int32_t body) {
+        ++result.touch[body].contacts;
+        result.touch[body].rounding += k * k * rounding;
+      };
+      add(pair.a);
+      if constexpr (Kinematics::second_is_body)
+        if (pair.b != pair.a) add(pair.b);
+    }
+  });
+  return result;
+}
+
+Vec3 free_part(const Vec3& v, std::uint8_t fixed) {
+  Vec3 result = v;
+  for (int k = 0; k < 3; ++k)
+    if (((fixed >> k) & 1) != 0) result[k] = 0;
+  return result;
+}
+
+}  // namespace
+
+Balance balance_of(const Model& model, const BodyForces& contacts) {
+  const model::Bodies& bodies = model.bodies;
+  const Survey found = survey(model);
+  Balance result{.contacts = found.contacts};
+  double floor = 0;
+  for (std::size_t i = 0; i < found.touch.size(); ++i) {
+    const model::FixedComponents fixed = bodies.fixed[i];
+    if (fixed.all()) continue;
+    if (found.touch[i].contacts == 0) {
+      if (!free_part(model.gravity, fixed.translation()).isZero(0)) ++result.unsupported;
+      continue;
+    }
+    ++result.bodies;
+    const double force =
+        free_part(contacts.force[i] + bodies.mass[i] * model.gravity, fixed.translation()).norm();
+    result.mean += force;
+    result.max = std::max(result.max, force);
+    floor += std::sqrt(found.touch[i].rounding);
+    if (contacts.moment.empty()) continue;
+    const double moment = free_part(contacts.moment[i], fixed.rotation()).norm() / bodies.radius[i];
+    result.moment_mean += moment;
+    result.moment_max = std::max(result.moment_max, moment);
+  }
+  if (found.contacts == 0 || result.bodies == 0 || found.force == 0) {
+    result.mean = result.max = result.moment_mean = result.moment_max = 0;
+    return result;
+  }
+  result.mean_contact_force = found.force / static_cast<double>(found.contacts);
+  const auto count = static_cast<double>(result.bodies);
+  result.mean /= count * result.mean_contact_force;
+  result.moment_mean /= count * result.mean_contact_force;
+  result.max /= result.mean_contact_force;
+  result.moment_max /= result.mean_contact_force;
+  result.floor = floor / (count * result.mean_contact_force);
+  return result;
+}
+
+Balance balance_of(const State& state) {
+  return balance_of(state.model, {state.force, state.moment});
+}
+
+}  // namespace eigengrain::assembly
