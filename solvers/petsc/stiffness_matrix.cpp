@@ -57,17 +57,31 @@ StiffnessMatrix::StiffnessMatrix(const Unknowns& unknowns, std::span<const conta
   // A contact outside of the pattern is a mistake of ours, never a reason to allocate.
   EIGENGRAIN_PETSC(MatSetOption(mat(), MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
   EIGENGRAIN_PETSC(MatSetOption(mat(), MAT_ROW_ORIENTED, PETSC_FALSE));  // Eigen's blocks are by columns
-  EIGENGRAIN_PETSC(MatSetOption(mat(), MAT_SYMMETRIC, PETSC_TRUE));
 }
 
 void StiffnessMatrix::begin() {
   EIGENGRAIN_PETSC(MatZeroEntries(mat()));
 }
 
+void StiffnessMatrix::add_block(std::int32_t row, std::int32_t column, const Mat3& block) {
+  EIGENGRAIN_PETSC(MatSetValuesBlocked(mat(), 1, &row, 1, &column, block.data(), ADD_VALUES));
+}
+
 void StiffnessMatrix::add(const contact::ContactElement& element) {
   assembly::scatter(element, *unknowns_, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
-    EIGENGRAIN_PETSC(MatSetValuesBlocked(mat(), 1, &row, 1, &column, block.data(), ADD_VALUES));
+    add_block(row, column, block);
   });
+}
+
+void StiffnessMatrix::add(std::int32_t a, std::int32_t b, const Mat12& k) {
+  const auto add = [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+    add_block(row, column, block);
+  };
+  assembly::scatter_pair(a, a, k.topLeftCorner<6, 6>(), *unknowns_, add);
+  if (b == contact::no_body) return;
+  assembly::scatter_pair(a, b, k.topRightCorner<6, 6>(), *unknowns_, add);
+  assembly::scatter_pair(b, a, k.bottomLeftCorner<6, 6>(), *unknowns_, add);
+  assembly::scatter_pair(b, b, k.bottomRightCorner<6, 6>(), *unknowns_, add);
 }
 
 void StiffnessMatrix::end() {

@@ -11,7 +11,8 @@ namespace eigengrain::petsc {
 
 /// K as an assembled PETSc matrix: BAIJ with blocks of 3, both triangles; masked rows and columns are zero.
 ///
-/// The pattern is laid down once, for a contact graph. It is then a sink of assembly::assemble_stiffness, and
+/// The pattern is laid down once, for a contact graph. It is then a sink of assembly::assemble_stiffness and
+/// of assembly::assemble_tangent, and
 ///
 ///     matrix.begin(); assemble_stiffness(model, matrix); matrix.end();
 ///
@@ -23,11 +24,15 @@ class StiffnessMatrix {
 
   void begin();
   void add(const contact::ContactElement& element);
+  /// The 12×12 of a contact on (u_a, θ_a, u_b, θ_b); at a wall (b = contact::no_body) the first 6×6 of it.
+  void add(std::int32_t a, std::int32_t b, const Mat12& k);
   void end();
 
   Mat mat() const { return matrix_.get(); }
 
  private:
+  void add_block(std::int32_t row, std::int32_t column, const Mat3& block);
+
   const assembly::Unknowns* unknowns_;
   Matrix matrix_;
 };

@@ -8,22 +8,6 @@
 namespace eigengrain::assembly {
 namespace {
 
-using contact::SideMotion;
-
-SideMotion side(const Trial& trial, std::int32_t body) {
-  const auto i = static_cast<std::size_t>(body);
-  return {trial.duration * trial.velocity[i],
-          trial.spin.empty() ? Vec3(Vec3::Zero()) : Vec3(trial.duration * trial.spin[i])};
-}
-
-template <class Kinematics>
-SideMotion second_side(const Trial& trial, const contact::Pair& pair) {
-  if constexpr (Kinematics::second_is_body)
-    return side(trial, pair.b);
-  else
-    return {};
-}
-
 /// A trial state with vectors of its own.
 struct TrialState {
   TrialState(const Model& model, const Displacement& displacement) : moved(displacement) {
@@ -105,10 +89,8 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
         continue;
       }
       State next;
-      const contact::ContactForce f = group.law.evaluate(
-          contact::motion_for<Kinematics>(group.law, placement, pair, geometry, side(trial, pair.a),
-                                          second_side<Kinematics>(trial, pair)),
-          old, next);
+      const contact::ContactForce f =
+          group.law.evaluate(motion_in<Kinematics>(group.law, placement, trial, pair, geometry), old, next);
       if constexpr (commit) group.states[c] = next;
       const contact::EndForces ends = contact::end_forces(geometry, f);
       sum.force[pair.a] += ends.force_a;
@@ -189,10 +171,8 @@ double elastic_energy(const Model& model, const Displacement& displacement) {
       for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
         const contact::Pair& pair = group.pairs[c];
         const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
-        parts[chunk] += group.law.energy(
-            contact::motion_for<Kinematics>(group.law, placement, pair, geometry, side(trial, pair.a),
-                                            second_side<Kinematics>(trial, pair)),
-            group.states[c]);
+        parts[chunk] += group.law.energy(motion_in<Kinematics>(group.law, placement, trial, pair, geometry),
+                                         group.states[c]);
       }
     });
     for (const double part : parts) energy += part;

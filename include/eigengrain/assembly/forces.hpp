@@ -22,7 +22,21 @@ struct Trial {
   std::span<const Vec3> velocity;  ///< [bodies]
   std::span<const Vec3> spin;      ///< [bodies]; or empty: nothing turns
   double duration = 1;
+
+  contact::SideMotion side(std::int32_t body) const {
+    const auto i = static_cast<std::size_t>(body);
+    return {duration * velocity[i], spin.empty() ? Vec3(Vec3::Zero()) : Vec3(duration * spin[i])};
+  }
 };
+
+/// The motion of a contact in a trial state, as its law wants it.
+template <class Kinematics, class Law>
+contact::ContactMotion motion_in(const Law& law, const contact::Placement& placement, const Trial& trial,
+                                 const contact::Pair& pair, const contact::ContactGeometry& geometry) {
+  contact::SideMotion second;
+  if constexpr (Kinematics::second_is_body) second = trial.side(pair.b);
+  return contact::motion_for<Kinematics>(law, placement, pair, geometry, trial.side(pair.a), second);
+}
 
 /// What the contacts exert on every body: force (N) and moment about its centre (N m).
 struct BodyForces {

@@ -14,27 +14,32 @@ inline Mat3 masked(const Unknowns& unknowns, std::int32_t row, std::int32_t colu
   return block;
 }
 
-/// Calls add(row block, column block, 3×3 block) for every part of a contact's K that has unknowns: 16 calls
-/// between two balls with rotations, 4 at a wall, fewer without rotations. For a body that touches its own
-/// image the same block is met several times; the parts add up.
+/// Calls add(row block, column block, 3×3 block) for every part of a 6×6 on (u, θ) of two bodies that has
+/// unknowns.
+template <class Add>
+void scatter_pair(std::int32_t row_body, std::int32_t column_body, const Mat6& block,
+                  const Unknowns& unknowns, const Add& add) {
+  const auto rows = unknowns.of(row_body);
+  const auto columns = unknowns.of(column_body);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      if (rows[i] == Unknowns::none || columns[j] == Unknowns::none) continue;
+      const Mat3 part = block.block<3, 3>(static_cast<int>(3 * i), static_cast<int>(3 * j));
+      add(rows[i], columns[j], masked(unknowns, rows[i], columns[j], part));
+    }
+}
+
+/// The same for every part of a contact's K: 16 calls between two balls with rotations, 4 at a wall, fewer
+/// without rotations. For a body that touches its own image the same block is met several times; the parts
+/// add up.
 template <class Add>
 void scatter(const contact::ContactElement& element, const Unknowns& unknowns, const Add& add) {
   const contact::ContactBlocks k = contact::stiffness_blocks(element);
-  const auto one_pair = [&](std::int32_t row_body, std::int32_t column_body, const Mat6& block) {
-    const auto rows = unknowns.of(row_body);
-    const auto columns = unknowns.of(column_body);
-    for (std::size_t i = 0; i < 2; ++i)
-      for (std::size_t j = 0; j < 2; ++j) {
-        if (rows[i] == Unknowns::none || columns[j] == Unknowns::none) continue;
-        const Mat3 part = block.block<3, 3>(static_cast<int>(3 * i), static_cast<int>(3 * j));
-        add(rows[i], columns[j], masked(unknowns, rows[i], columns[j], part));
-      }
-  };
-  one_pair(element.a, element.a, k.aa);
+  scatter_pair(element.a, element.a, k.aa, unknowns, add);
   if (element.b == contact::no_body) return;
-  one_pair(element.a, element.b, k.ab);
-  one_pair(element.b, element.a, k.ab.transpose());
-  one_pair(element.b, element.b, k.bb);
+  scatter_pair(element.a, element.b, k.ab, unknowns, add);
+  scatter_pair(element.b, element.a, k.ab.transpose(), unknowns, add);
+  scatter_pair(element.b, element.b, k.bb, unknowns, add);
 }
 
 }  // namespace eigengrain::assembly

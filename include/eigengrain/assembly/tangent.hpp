@@ -1,0 +1,43 @@
+#pragma once
+
+#include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/assembly/model.hpp"
+#include "eigengrain/contact/consistent_tangent.hpp"
+#include "eigengrain/contact/element.hpp"
+
+#include <concepts>
+
+namespace eigengrain::assembly {
+
+/// Whatever takes consistent tangents one by one: bodies a and b (contact::no_body at a wall) and the 12×12
+/// on (u_a, θ_a, u_b, θ_b), of which only the first 6×6 means anything at a wall.
+template <class S>
+concept TangentSink = requires(S& sink, std::int32_t body, const Mat12& k) {
+  sink.add(body, body, k);
+};
+
+/// Hands the consistent tangent of every contact that acts in the trial state to the sink, in the order of
+/// the contacts: minus the derivative of ContactForceSum::evaluate, exact where the trial is the committed
+/// state and up to the size of the increment over the radius elsewhere. Nothing is stored in the contacts.
+template <TangentSink Sink>
+void assemble_tangent(const Model& model, const Trial& trial, Sink& sink) {
+  const contact::Placement placement = model.placement(trial.position);
+  model.contacts.for_each_group([&](const auto& group) {
+    using Group = std::decay_t<decltype(group)>;
+    using Kinematics = typename Group::KinematicsType;
+    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      const contact::Pair& pair = group.pairs[c];
+      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+      if (!group.law.acts(contact::at_rest(geometry), group.states[c])) continue;
+      const contact::ContactMotion motion =
+          motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+      typename Group::State discarded;
+      const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
+      sink.add(pair.a, Kinematics::second_is_body ? pair.b : contact::no_body,
+               contact::consistent_tangent(geometry, Kinematics::curvature(geometry), force,
+                                           group.law.tangent(motion, group.states[c])));
+    }
+  });
+}
+
+}  // namespace eigengrain::assembly

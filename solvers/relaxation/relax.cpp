@@ -1,0 +1,150 @@
+#include "eigengrain/relaxation/relax.hpp"
+
+#include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/base/text.hpp"
+#include "eigengrain/base/timer.hpp"
+#include "eigengrain/cycle/cycle.hpp"
+#include "eigengrain/cycle/policy.hpp"
+
+#include "newton.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace eigengrain::relaxation {
+namespace {
+
+using assembly::Balance;
+using assembly::State;
+
+constexpr double explicit_damping = 0.7;
+constexpr double explicit_safety = 0.95;  // of a proven bound
+constexpr std::int64_t steps_between_looks = 100;
+constexpr std::int64_t steps_between_reports = 1000;
+/// Lists of contacts that Newton may use up before explicit cycles go on.
+constexpr int most_lists = 20;
+/// Newton is asked for this part of what is wished, so that the commit's rounding does not undo it.
+constexpr double newton_margin = 0.3;
+
+bool at_rest_within(const Balance& balance, double ratio) {
+  return balance.unsupported == 0 && balance.mean <= ratio;
+}
+
+/// Everything stands still at a moment of its own.
+void halt(State& state) {
+  for (Vec3& v : state.model.bodies.velocity) v.setZero();
+  for (Vec3& w : state.model.bodies.spin) w.setZero();
+  state.dt = 0;
+  state.next_dt = 0;
+}
+
+class Relaxation {
+ public:
+  Relaxation(State& state, const RelaxOptions& options) : state_(state), options_(options) {}
+
+  RelaxResult run() {
+    const Stopwatch watch;
+    const Clock clock(state_);
+    const double damping = std::exchange(state_.model.local_damping, explicit_damping);
+    halt(state_);
+    result_.start = result_.end = assembly::balance_of(state_);
+    double hand_over = options_.hand_over;
+    while (!at_rest_within(result_.end, options_.tolerance) && !given_up()) {
+      if (!at_rest_within(result_.end, hand_over)) approach(hand_over);
+      if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
+      if (!finish()) hand_over = std::min(hand_over, result_.end.mean) / 10;
+    }
+    halt(state_);
+    clock.restore(state_);
+    state_.model.local_damping = damping;
+    result_.converged = at_rest_within(result_.end, options_.tolerance);
+    result_.seconds = watch.seconds();
+    return std::move(result_);
+  }
+
+ private:
+  struct Clock {
+    explicit Clock(const State& state) : time(state.time), step(state.step) {}
+    void restore(State& state) const {
+      state.time = time;
+      state.step = step;
+    }
+    double time;
+    std::int64_t step;
+  };
+
+  bool given_up() const { return interrupted_ || result_.explicit_steps >= options_.max_steps; }
+
+  void report(const std::string& stage) const {
+    if (options_.report)
+      options_.report(fmt::format(
+          "{}: {} explicit steps, unbalanced mean {:.2e}, max {:.2e}{}", stage,
+          grouped(result_.explicit_steps), result_.end.mean, result_.end.max,
+          result_.end.unsupported > 0 ? fmt::format(", {} unsupported", result_.end.unsupported) : ""));
+  }
+
+  /// Explicit cycles down to the ratio.
+  void approach(double ratio) {
+    const Stopwatch watch;
+    model::Scene settings = state_.settings;
+    settings.timestep = {model::TimestepPolicy::bound, explicit_safety, {}};
+    cycle::Cycle cycle(std::move(state_), cycle::policy_of(settings));
+    do {
+      cycle.run(steps_between_looks);
+      result_.explicit_steps += steps_between_looks;
+      result_.end = assembly::balance_of(cycle.state());
+      if (result_.explicit_steps % steps_between_reports == 0) report("explicit");
+      interrupted_ = options_.interrupted && options_.interrupted();
+    } while (!at_rest_within(result_.end, ratio) && !given_up());
+    state_ = cycle.release();
+    halt(state_);
+    note_method("explicit");
+    result_.explicit_seconds += watch.seconds();
+  }
+
+  /// Newton's method, with new lists while bodies go farther than one knows; whether it found the
+  /// equilibrium.
+  bool finish() {
+    for (int list = 0; list < most_lists; ++list) {
+      const double reach = options_.reach_of_skin * state_.list.skin;
+      assembly::list_contacts(state_.model, state_.settings, reach);
+      state_.list.position = state_.model.bodies.position;
+      NewtonOptions wanted;
+      wanted.target = std::max(newton_margin * options_.tolerance, 1.5 * result_.end.floor);
+      wanted.reach = reach;
+      wanted.longest_step = options_.shift;
+      const NewtonResult found = newton(state_, wanted);
+      ++result_.attempts;
+      result_.newton_iterations += found.iterations;
+      result_.linear_iterations += found.linear_iterations;
+      result_.end = assembly::balance_of(state_);
+      report(
+          fmt::format("newton, {} iterations ({} linear){}", found.iterations, found.linear_iterations,
+                      found.converged ? "" : fmt::format(", ended at {:.1e}: {}", found.ratio, found.why)));
+      if (found.converged) note_method("newton");
+      interrupted_ = options_.interrupted && options_.interrupted();
+      if (found.converged || !found.unfinished || interrupted_) return found.converged;
+    }
+    return false;
+  }
+
+  void note_method(const std::string& name) {
+    if (result_.method.find(name) == std::string::npos)
+      result_.method += (result_.method.empty() ? "" : "+") + name;
+  }
+
+  State& state_;
+  const RelaxOptions& options_;
+  RelaxResult result_;
+  bool interrupted_ = false;
+};
+
+}  // namespace
+
+RelaxResult relax(State& state, const RelaxOptions& options) {
+  return Relaxation(state, options).run();
+}
+
+}  // namespace eigengrain::relaxation
