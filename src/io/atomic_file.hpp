@@ -23,6 +23,7 @@ class AtomicFile {
 
  private:
   struct Close {
+    // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the unique_ptr is the owner
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 

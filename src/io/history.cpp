@@ -122,6 +122,7 @@ HistoryFile::HistoryFile(const fs::path& folder, const model::History& history,
     empty.write(header_);
     empty.commit();
   }
+  // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the unique_ptr is the owner
   file_.reset(std::fopen(file_name_.c_str(), "abe"));
   if (!file_) throw_cannot_write(file_name_);
 }

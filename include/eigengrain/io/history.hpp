@@ -55,6 +55,7 @@ class HistoryFile {
 
  private:
   struct Close {
+    // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the unique_ptr is the owner
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
