@@ -109,10 +109,6 @@ bool coincide(const model::Plane& first, const model::Plane& second) {
   return first.normal.dot(second.normal) > 1 - 1e-12 && distance <= size;
 }
 
-std::string text_of(const Place& place) {
-  return place.line > 0 ? fmt::format("{}:{}", place.file, place.line) : place.file;
-}
-
 void check_coincidence(const SceneDraft& draft, Diagnostics& diagnostics) {
   const model::Bodies& bodies = draft.scene.bodies;
   for (const auto& [first, second] : coincident_balls(bodies.position, bodies.radius, draft.scene.cell)) {

@@ -8,6 +8,10 @@
 
 namespace eigengrain::io {
 
+std::string text_of(const Place& place) {
+  return place.line > 0 ? fmt::format("{}:{}", place.file, place.line) : place.file;
+}
+
 void Diagnostics::add(const Place& place, std::string message, std::string_view kind) {
   ++count_;
   if (!kind.empty()) {

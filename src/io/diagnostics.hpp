@@ -17,6 +17,9 @@ struct Place {
   int line = 0;  ///< 1-based; 0 where a line means nothing
 };
 
+/// "scene.yaml:12"
+std::string text_of(const Place& place);
+
 /// Collects the mistakes found in an input, so that a user sees all of them at once. A kind of mistake that
 /// a big file repeats is listed `limit` times for that file, and then only counted.
 class Diagnostics {

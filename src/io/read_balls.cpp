@@ -13,6 +13,8 @@ namespace {
 struct BallKind {
   std::int32_t material = -1;
   model::FixedComponents fixed;
+  Vec3 velocity;  ///< m/s
+  Vec3 spin;      ///< rad/s
 };
 
 model::FixedComponents read_fixed(const Section& section) {
@@ -24,6 +26,13 @@ model::FixedComponents read_fixed(const Section& section) {
       if (components[k] == word) fixed.fix(k);
   }
   return fixed;
+}
+
+/// Adds the next row to a column that is there only if some ball needs it; rows before are zero.
+void add_row(std::vector<Vec3>& column, std::int32_t row, const Vec3& value) {
+  if (column.empty() && value == Vec3::Zero()) return;
+  column.resize(static_cast<std::size_t>(row), Vec3::Zero());
+  column.push_back(value);
 }
 
 /// Adds balls to the draft, and remembers where each stands.
@@ -39,6 +48,8 @@ class BallList {
     const double mass = model::sphere_mass(radius, density(kind.material));
     const double inertia = model::sphere_inertia(radius, mass);
     if (!std::isnormal(inertia) && density(kind.material) > 0) report_size(radius, mass, line);
+    add_row(bodies.velocity, bodies.size(), kind.velocity);
+    add_row(bodies.spin, bodies.size(), kind.spin);
     bodies.identity.push_back(bodies.size());
     bodies.position.push_back(draft_.scene.cell.wrapped(position));
     bodies.radius.push_back(radius);
@@ -109,7 +120,10 @@ void read_balls(const Section& root, SceneDraft& draft) {
   BallList balls(draft, diagnostics);
   for (const Section& section : root.sections("balls")) {
     section.check_keys();
-    const BallKind kind{read_material(section, "material", draft.scene), read_fixed(section)};
+    const BallKind kind{.material = read_material(section, "material", draft.scene),
+                        .fixed = read_fixed(section),
+                        .velocity = section.vector("velocity").value_or(Vec3::Zero()),
+                        .spin = section.vector("spin").value_or(Vec3::Zero())};
     if (section.has("file"))
       read_packing(section, kind, draft, balls);
     else if (section.has("position"))
@@ -121,6 +135,7 @@ void read_balls(const Section& root, SceneDraft& draft) {
   }
   if (root.has("balls") && draft.scene.bodies.size() == 0 && diagnostics.count() == mistakes_before)
     root.report("balls", "no balls; add e.g. \"- {position: [0, 0, 0], radius: 5 mm, material: grain}\"");
+  draft.balls_complete = diagnostics.count() == mistakes_before;
 }
 
 }  // namespace eigengrain::io

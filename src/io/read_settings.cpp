@@ -62,12 +62,14 @@ void read_run(const Section& root, SceneDraft& draft) {
   if (!section) return;
   section->check_keys();
   draft.scene.run.steps = section->integer("steps");
+  draft.scene.run.time = section->quantity("time");
   if (const auto until = section->section("until")) {
     until->check_keys();
     draft.scene.run.unbalanced = until->quantity("unbalanced");
   }
-  if (!section->has("steps") && !section->has("until"))
-    section->report("says nothing; add \"steps: 10000\" or \"until: {unbalanced: 1e-5}\", or remove run");
+  if (!section->has("steps") && !section->has("time") && !section->has("until"))
+    section->report(
+        "says nothing; add \"steps: 10000\", \"time: 2 s\" or \"until: {unbalanced: 1e-5}\", or remove run");
 }
 
 }  // namespace eigengrain::io

@@ -102,6 +102,7 @@ void read_box(const WallEntry& wall, const Section& box) {
 }  // namespace
 
 void read_walls(const Section& root, SceneDraft& draft) {
+  const std::int64_t mistakes_before = root.diagnostics().count();
   std::size_t number = 0;
   for (const Section& section : root.sections("walls")) {
     section.check_keys();
@@ -115,6 +116,7 @@ void read_walls(const Section& root, SceneDraft& draft) {
     if (const auto plane = section.section("plane")) read_plane(wall, *plane);
     if (const auto box = section.section("box")) read_box(wall, *box);
   }
+  draft.walls_complete = root.diagnostics().count() == mistakes_before;
 }
 
 }  // namespace eigengrain::io

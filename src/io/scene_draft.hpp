@@ -30,10 +30,12 @@ struct SceneDraft {
   std::vector<Place> material_places;
   std::vector<Place> wall_places;
   bool contacts_complete = true;  ///< no entry was left out because of a mistake
+  bool balls_complete = true;     ///< neither was a ball
+  bool walls_complete = true;     ///< nor a wall
 };
 
 /// One function for each section of the scene; each reads its own keys only. Those that use the materials
-/// come after read_materials, read_balls and read_walls after read_periodic.
+/// come after read_materials, read_balls and read_walls after read_periodic, read_histories after both.
 void read_materials(const Section& root, SceneDraft& draft);
 void read_periodic(const Section& root, SceneDraft& draft);
 void read_contacts(const Section& root, SceneDraft& draft);
@@ -43,6 +45,8 @@ void read_gravity(const Section& root, SceneDraft& draft);
 void read_damping(const Section& root, SceneDraft& draft);
 void read_timestep(const Section& root, SceneDraft& draft);
 void read_run(const Section& root, SceneDraft& draft);
+void read_histories(const Section& root, SceneDraft& draft);
+void read_outputs(const Section& root, SceneDraft& draft);
 
 /// Index of the material that the key names; -1, after a report, if there is none, and -1 if the key is
 /// absent.

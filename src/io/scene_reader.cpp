@@ -24,6 +24,8 @@ void read_sections(const Section& root, SceneDraft& draft) {
   read_damping(root, draft);
   read_timestep(root, draft);
   read_run(root, draft);
+  read_histories(root, draft);
+  read_outputs(root, draft);
   check_scene(root, draft);
 }
 

@@ -2,8 +2,6 @@
 
 #include "eigengrain/contact/law_table.hpp"
 
-#include "units.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,6 +89,18 @@ std::vector<KeyDescription> own_keys() {
        .words = {"x", "y", "z", "wx", "wy", "wz", "all"},
        .example = "[x, wy]",
        .description = "components of the velocity and of the angular velocity that keep their value"},
+      {.path = "balls[].velocity",
+       .kind = vector,
+       .unit = "m/s",
+       .fallback = "[0, 0, 0]",
+       .example = "[0, 0, -1.5]",
+       .description = "at the start, of every ball of the entry"},
+      {.path = "balls[].spin",
+       .kind = vector,
+       .unit = "rad/s",
+       .fallback = "[0, 0, 0]",
+       .example = "[0, 10, 0]",
+       .description = "angular velocity at the start, of every ball of the entry"},
 
       {.path = "walls",
        .kind = section_list,
@@ -198,12 +208,20 @@ std::vector<KeyDescription> own_keys() {
       {.path = "run",
        .kind = section,
        .example = "{steps: 10000}",
-       .description = "when the explicit cycle ends: `steps`, `until` or both; absent: no run"},
+       .description = "when the explicit cycle ends: at the first of `steps`, `time` and `until`, one of "
+                      "which is wanted; "
+                      "absent: no run"},
       {.path = "run.steps",
        .kind = integer,
        .range = {.low = 1},
        .example = "10000",
-       .description = "number of steps, or with `until` the largest number"},
+       .description = "number of steps since the start of the scene"},
+      {.path = "run.time",
+       .kind = quantity,
+       .unit = "s",
+       .range = positive,
+       .example = "2 s",
+       .description = "time since the start of the scene"},
       {.path = "run.until",
        .kind = section,
        .example = "{unbalanced: 1e-5}",
@@ -214,6 +232,52 @@ std::vector<KeyDescription> own_keys() {
        .required = true,
        .example = "1e-5",
        .description = "the mean unbalanced force ratio is below this"},
+
+      {.path = "histories",
+       .kind = section_list,
+       .fallback = "[]",
+       .example = "[{file: energies.csv, every: 100, of: [energies]}]",
+       .description = "tables that a run writes; each wants `of`, `balls` or both"},
+      {.path = "histories[].file",
+       .kind = text,
+       .required = true,
+       .example = "energies.csv",
+       .description = "a name that ends in .csv, in the folder of results, each only once"},
+      {.path = "histories[].every",
+       .kind = integer,
+       .range = {.low = 1},
+       .fallback = "1",
+       .example = "100",
+       .description = "steps from one line to the next"},
+      {.path = "histories[].of",
+       .kind = words,
+       .fallback = "[]",
+       .words = {"energies", "unbalanced", "walls"},
+       .example = "[energies, unbalanced]",
+       .description =
+           "columns: kinetic, elastic and gravitational energy; mean and maximum of the unbalanced "
+           "force ratio; force on each wall"},
+      {.path = "histories[].balls",
+       .kind = integers,
+       .range = {.low = 0},
+       .fallback = "[]",
+       .example = "[0]",
+       .description = "columns: position, velocity and spin of the balls of these numbers"},
+
+      {.path = "outputs",
+       .kind = section,
+       .example = "{checkpoint: 10000, series: 1000}",
+       .description = "what else a run writes"},
+      {.path = "outputs.checkpoint",
+       .kind = integer,
+       .range = {.low = 1},
+       .example = "10000",
+       .description = "steps from one checkpoint, from which the run can go on, to the next; absent: none"},
+      {.path = "outputs.series",
+       .kind = integer,
+       .range = {.low = 1},
+       .example = "1000",
+       .description = "steps from one frame for ParaView to the next; absent: none"},
   };
 }
 
@@ -246,63 +310,6 @@ std::vector<KeyDescription> all_keys() {
   const auto behind = std::find_if(keys.begin(), keys.end(), [](const auto& k) { return k.path == "balls"; });
   keys.insert(behind, of_laws.begin(), of_laws.end());
   return keys;
-}
-
-std::string in_code(std::string_view text) {
-  return text.empty() ? std::string() : fmt::format("`{}`", text);
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& each : words) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", each);
-  return text;
-}
-
-std::string value_text(const KeyDescription& key) {
-  const std::string unit = key.unit.empty() ? "number" : key.unit;
-  const std::string range = key.range.text().empty() ? "" : ", " + key.range.text();
-  switch (key.kind) {
-    case section:
-      return "section";
-    case section_list:
-      return "list of sections";
-    case quantity:
-      return unit + range;
-    case vector:
-      return fmt::format("three of {}", unit);
-    case integer:
-      return "whole number" + range;
-    case flag:
-      return "`true` or `false`";
-    case text:
-      return "name";
-    case texts:
-      return "two names";
-    case word:
-      return "one of " + joined(key.words);
-    case words:
-      return "list out of " + joined(key.words);
-  }
-  return {};
-}
-
-std::string table_row(const KeyDescription& key, std::string_view name) {
-  const std::string fallback = key.required ? "required" : in_code(key.fallback);
-  return fmt::format("| `{}` | {} | {} | {} | {} |\n", name, value_text(key), fallback, in_code(key.example),
-                     key.description);
-}
-
-constexpr std::string_view table_head =
-    "| key | value | default | example | meaning |\n| --- | --- | --- | --- | --- |\n";
-
-std::string laws_markdown() {
-  std::string text;
-  for (const contact::LawDescription& law : contact::law_descriptions()) {
-    text += fmt::format("\n### `law: {}`\n\n{}\n\n{}", law.name, law.description, table_head);
-    for (const KeyDescription* key : section_keys("contacts[]", law.name))
-      if (!key->law.empty()) text += table_row(*key, key->name());
-  }
-  return text;
 }
 
 }  // namespace
@@ -346,33 +353,6 @@ std::vector<const KeyDescription*> section_keys(std::string_view section, std::s
   for (const KeyDescription& key : scene_schema())
     if (key.section() == section && (law.empty() || key.law.empty() || key.law == law)) keys.push_back(&key);
   return keys;
-}
-
-std::string schema_markdown() {
-  std::string text = R"(# The scene file
-
-Generated from the table in `src/io/schema.cpp` that the reader itself uses; a test keeps the two equal.
-
-A scene is one YAML document. Paths in it are relative to its folder. A key that stands nowhere below is an
-error, and so are a wrong unit, a number that is not finite and a key given twice; all mistakes are reported
-at once. `--set key=value` on the command line acts as if the file said so: `--set timestep.safety=0.5`,
-`--set contacts.0.kn=2e5`, `--set "run={steps: 100}"`.
-
-`[]` stands for each entry of a list. "Required" means: wherever the section itself stands.
-
-## Keys
-
-)";
-  text += table_head;
-  for (const KeyDescription& key : scene_schema())
-    if (key.law.empty()) text += table_row(key, key.path);
-  text += "\n## Contact laws\n\nThe parameters stand beside `law`, in the same entry of `contacts`.\n";
-  text += laws_markdown();
-  text += "\n## Units\n\n";
-  text +=
-      "A plain number is in SI units. A quantity may carry its unit instead: `5 mm`, `48 GPa`, `2.5 g/cm3`,\n"
-      "`1e5 N/m`, `m s-2`, `kg*m^-3`; a unit of another dimension is an error. µ is the same as u.\n\n";
-  return text + units_markdown();
 }
 
 }  // namespace eigengrain::io

@@ -37,6 +37,8 @@ std::string wanted(const KeyDescription& key) {
       return "a list of sections";
     case KeyKind::vector:
       return "a list of three values";
+    case KeyKind::integers:
+      return "a list of whole numbers";
     case KeyKind::texts:
     case KeyKind::words:
       return "a list of words";
@@ -123,16 +125,24 @@ std::optional<Vec3> Section::vector(std::string_view key) const {
 
 std::optional<std::int64_t> Section::integer(std::string_view key) const {
   const Node* node = value(key, Node::Kind::scalar);
-  if (node == nullptr) return std::nullopt;
-  const auto [number, problem] = read_integer(node->text);
-  const Range& range = describe(key).range;
-  if (!number)
-    report(key, problem);
-  else if (!range.contains(static_cast<double>(*number)))
-    report(key, fmt::format("{}; a whole number {} is wanted", *number, range.text()));
-  else
-    return number;
-  return std::nullopt;
+  return node != nullptr ? read_whole_number(*node, path_of(key), describe(key)) : std::nullopt;
+}
+
+std::optional<std::vector<std::int64_t>> Section::integers(std::string_view key) const {
+  const Node* given = node_->find(key);
+  if (given != nullptr && given->kind == Node::Kind::scalar) {
+    const auto number = integer(key);
+    return number ? std::optional(std::vector{*number}) : std::nullopt;
+  }
+  const Node* list = value(key, Node::Kind::list);
+  if (list == nullptr) return std::nullopt;
+  std::vector<std::int64_t> result;
+  for (std::size_t k = 0; k < list->children.size(); ++k) {
+    const auto number =
+        read_whole_number(list->children[k], fmt::format("{}[{}]", path_of(key), k), describe(key));
+    if (number) result.push_back(*number);
+  }
+  return result.size() == list->children.size() ? std::optional(result) : std::nullopt;
 }
 
 std::optional<bool> Section::flag(std::string_view key) const {
@@ -206,6 +216,24 @@ std::optional<double> Section::read_number(const Node& node, const std::string& 
   } else {
     return number;
   }
+  return std::nullopt;
+}
+
+std::optional<std::int64_t> Section::read_whole_number(const Node& node, const std::string& path,
+                                                       const KeyDescription& key) const {
+  if (node.kind != Node::Kind::scalar) {
+    report_at(node, path,
+              fmt::format("{} stands where a whole number is wanted, e.g. {}", kind_name(node.kind),
+                          example_line(key)));
+    return std::nullopt;
+  }
+  const auto [number, problem] = read_integer(node.text);
+  if (!number)
+    report_at(node, path, problem);
+  else if (!key.range.contains(static_cast<double>(*number)))
+    report_at(node, path, fmt::format("{}; a whole number {} is wanted", *number, key.range.text()));
+  else
+    return number;
   return std::nullopt;
 }
 

@@ -31,6 +31,8 @@ class Section {
   std::optional<double> quantity(std::string_view key) const;
   std::optional<Vec3> vector(std::string_view key) const;
   std::optional<std::int64_t> integer(std::string_view key) const;
+  /// A list of whole numbers; a single one counts as a list.
+  std::optional<std::vector<std::int64_t>> integers(std::string_view key) const;
   std::optional<bool> flag(std::string_view key) const;
   /// A text, or one word out of the schema's.
   std::optional<std::string> text(std::string_view key) const;
@@ -57,6 +59,8 @@ class Section {
   const Node* value(std::string_view key, Node::Kind kind) const;
   std::optional<double> read_number(const Node& node, const std::string& path,
                                     const KeyDescription& key) const;
+  std::optional<std::int64_t> read_whole_number(const Node& node, const std::string& path,
+                                                const KeyDescription& key) const;
   std::optional<std::string> read_word(const Node& node, const std::string& path,
                                        const KeyDescription& key) const;
   void report_unknown_key(const Node& child) const;

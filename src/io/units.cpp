@@ -30,12 +30,13 @@ constexpr std::array unit_table{
     UnitRow{"h", {{0, 0, 1}, 3600, 0}, "", "hour"},
     UnitRow{"N", {{1, 1, -2}, 1, 0}, "numkMG", "newton"},
     UnitRow{"Pa", {{-1, 1, -2}, 1, 0}, "numkMG", "pascal"},
+    UnitRow{"rad", {{0, 0, 0}, 1, 0}, "m", "radian, a pure number"},
 };
 
 constexpr std::array<std::pair<char, int>, 8> prefix_table{
     {{'n', -9}, {'u', -6}, {'m', -3}, {'c', -2}, {'d', -1}, {'k', 3}, {'M', 6}, {'G', 9}}};
 
-constexpr std::array<std::pair<Dimension, std::string_view>, 12> named_dimensions{{
+constexpr std::array<std::pair<Dimension, std::string_view>, 13> named_dimensions{{
     {{0, 0, 0}, "a pure number"},
     {{1, 0, 0}, "a length"},
     {{2, 0, 0}, "an area"},
@@ -43,6 +44,7 @@ constexpr std::array<std::pair<Dimension, std::string_view>, 12> named_dimension
     {{0, 1, 0}, "a mass"},
     {{0, 0, 1}, "a time"},
     {{1, 0, -1}, "a velocity"},
+    {{0, 0, -1}, "a rate"},
     {{1, 0, -2}, "an acceleration"},
     {{-3, 1, 0}, "a density"},
     {{1, 1, -2}, "a force"},

@@ -20,14 +20,17 @@ contacts:
   - {between: [any, any], law: none}
 balls:
   - {file: packing.txt, material: grain}
-  - {position: [0.1, 0.1, 0.2], radius: 5 mm, material: grain, fix: [x, wy]}
+  - {position: [0.1, 0.1, 0.2], radius: 5 mm, material: grain, fix: [x, wy], velocity: [1, 0, 0], spin: [0, 1, 0]}
 walls:
   - {plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}
   - {box: {min: [0, 0, 0], max: [0.21, 0.21, 0.254], open: [-x, +x, +z]}, material: steel}
 periodic: {box: [0.21, 0.21, 0.25], origin: [0, 0, 0], axes: [x]}
 damping: {local: 0.7}
 timestep: {policy: fixed, safety: 0.8, dt: 10 us}
-run: {steps: 10000, until: {unbalanced: 1.0e-5}}
+run: {steps: 10000, time: 2 s, until: {unbalanced: 1.0e-5}}
+histories:
+  - {file: a.csv, every: 10, of: [energies, walls], balls: [0, 2]}
+outputs: {checkpoint: 100, series: 10}
 )";
 
 using Random = std::mt19937_64;

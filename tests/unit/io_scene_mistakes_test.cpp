@@ -369,11 +369,92 @@ TEST(Mistakes, Settings) {
   EXPECT_THAT(rest("timestep: {safety: 0}"),
               ElementsAre(HasSubstr("timestep.safety: \"0\" is out of range")));
   EXPECT_THAT(rest("run: {}"), ElementsAre(HasSubstr("run: says nothing")));
+  EXPECT_THAT(rest("run: {time: 0}"), ElementsAre(HasSubstr("run.time: \"0\" is out of range; a value > 0")));
+  EXPECT_THAT(rest("run: {time: 5 m}"), ElementsAre(HasSubstr("\"5 m\" is a length; a time is wanted")));
   EXPECT_THAT(rest("run: {steps: 0}"), ElementsAre(HasSubstr("run.steps: 0; a whole number >= 1 is wanted")));
   EXPECT_THAT(rest("run: {steps: 1.5}"), ElementsAre(HasSubstr("run.steps: \"1.5\" is not a whole number")));
   EXPECT_THAT(rest("run: {until: {}}"), ElementsAre(HasSubstr("run.until: unbalanced is missing")));
   EXPECT_THAT(rest("run: {until: {unbalanced: 0}}"),
               ElementsAre(HasSubstr("run.until.unbalanced: \"0\" is out of")));
+}
+
+TEST(Mistakes, Velocities) {
+  const auto ball = [](const std::string& keys) {
+    return reported({.balls = "balls: [{position: [0, 0, 1], radius: 0.1, material: grain, " + keys + "}]"});
+  };
+  EXPECT_THAT(
+      ball("velocity: [1, 0, 2 m]"),
+      ElementsAre("scene.yaml:4: balls[0].velocity[2]: \"2 m\" is a length; a velocity is wanted, e.g. "
+                  "\"2 m/s\""));
+  EXPECT_THAT(ball("velocity: 1"),
+              ElementsAre(HasSubstr("a list of three values is wanted, e.g. \"velocity: [")));
+  EXPECT_THAT(ball("spin: [0, 1]"), ElementsAre(HasSubstr("balls[0].spin: 2 values; three are wanted")));
+  EXPECT_THAT(ball("spin: [0, 0, 1 m/s]"),
+              ElementsAre(HasSubstr("\"1 m/s\" is a velocity; a rate is wanted, e.g. \"1 rad/s\"")));
+  EXPECT_THAT(ball("spin: [0, 0, inf]"),
+              ElementsAre(HasSubstr("balls[0].spin[2]: \"inf\" is not a finite number")));
+}
+
+TEST(Mistakes, Histories) {
+  const auto histories = [](const std::string& entries) {
+    return reported({.rest = "histories: [" + entries + "]"});
+  };
+  EXPECT_THAT(histories("{file: a.csv, every: 5, of: [energies, walls], balls: [0]}"), IsEmpty());
+  EXPECT_THAT(histories(""), IsEmpty());
+  EXPECT_THAT(histories("{of: energies}"),
+              ElementsAre("scene.yaml:6: histories[0]: file is missing; add e.g. \"file: energies.csv\""));
+  EXPECT_THAT(histories("{file: a.txt, of: energies}"),
+              ElementsAre("scene.yaml:6: histories[0].file: \"a.txt\": does not end in .csv; write e.g. "
+                          "\"a.txt.csv\""));
+  EXPECT_THAT(histories("{file: .csv, of: energies}"),
+              ElementsAre(HasSubstr("has nothing before .csv; write")));
+  EXPECT_THAT(histories("{file: out/a.csv, of: energies}"),
+              ElementsAre(HasSubstr("\"out/a.csv\": a name without folders is wanted")));
+  EXPECT_THAT(histories("{file: a.csv, of: energies}, {file: a.csv, of: walls}"),
+              ElementsAre("scene.yaml:6: histories[1].file: \"a.csv\" is the file of another table already "
+                          "(scene.yaml:6); choose another name"));
+  EXPECT_THAT(histories("{file: a.csv, every: 0, of: energies}"),
+              ElementsAre(HasSubstr("histories[0].every: 0; a whole number >= 1 is wanted")));
+  EXPECT_THAT(
+      histories("{file: a.csv, of: [energy]}"),
+      ElementsAre(HasSubstr("histories[0].of[0]: \"energy\" is none of energies, unbalanced, walls")));
+  EXPECT_THAT(
+      histories("{file: a.csv}"),
+      ElementsAre("scene.yaml:6: histories[0]: no columns; add e.g. \"of: [energies, unbalanced, walls]\", "
+                  "or the numbers of balls, \"balls: [0]\""));
+  EXPECT_THAT(
+      histories("{file: a.csv, balls: [1]}"),
+      ElementsAre("scene.yaml:6: histories[0].balls: there is no ball 1; the 1 of the scene are numbered "
+                  "from 0 to 0"));
+  EXPECT_THAT(histories("{file: a.csv, balls: [0, 0]}"), ElementsAre(HasSubstr("ball 0 stands there twice")));
+  EXPECT_THAT(histories("{file: a.csv, balls: [-1, 0.5, [0]]}"),
+              ElementsAre("scene.yaml:6: histories[0].balls[0]: -1; a whole number >= 0 is wanted",
+                          HasSubstr("histories[0].balls[1]: \"0.5\" is not a whole number"),
+                          HasSubstr("histories[0].balls[2]: a list stands where a whole number is wanted")));
+  EXPECT_THAT(histories("{file: a.csv, balls: {a: 1}}"),
+              ElementsAre(HasSubstr(
+                  "a section stands where a list of whole numbers is wanted, e.g. \"balls: [0]\"")));
+  EXPECT_THAT(
+      reported({.walls = "", .rest = "histories: [{file: a.csv, of: [energies, walls]}]"}),
+      ElementsAre("scene.yaml:6: histories[0].of: walls, and the scene has none; remove the word, or add "
+                  "walls"));
+  // What a mistake elsewhere left out is not missed here as well.
+  EXPECT_THAT(reported({.balls = "balls: [{position: [0, 0, 1], radius: -1, material: grain}]",
+                        .walls = "walls: [{plane: {point: [0, 0, 0]}, material: steel}]",
+                        .rest = "histories: [{file: a.csv, of: [walls], balls: [0]}]"}),
+              ElementsAre(HasSubstr("balls[0].radius"), HasSubstr("walls[0].plane: normal is missing")));
+}
+
+TEST(Mistakes, Outputs) {
+  const auto outputs = [](const std::string& keys) { return reported({.rest = "outputs: {" + keys + "}"}); };
+  EXPECT_THAT(outputs(""), IsEmpty());
+  EXPECT_THAT(outputs("checkpoint: 10, series: 5"), IsEmpty());
+  EXPECT_THAT(outputs("checkpoint: 0"),
+              ElementsAre("scene.yaml:6: outputs.checkpoint: 0; a whole number >= 1 is wanted"));
+  EXPECT_THAT(outputs("series: 1 s"),
+              ElementsAre(HasSubstr("outputs.series: \"1 s\" is not a whole number")));
+  EXPECT_THAT(outputs("frames: 5"),
+              ElementsAre(HasSubstr("frames: unknown key (outputs takes checkpoint, series)")));
 }
 
 TEST(Mistakes, ThatABigSceneRepeatsAreCounted) {

@@ -111,7 +111,13 @@ TEST(ReadScene, DefaultsAreThoseOfTheModel) {
   EXPECT_EQ(scene.timestep.safety, defaults.timestep.safety);
   EXPECT_FALSE(scene.run.steps.has_value());
   EXPECT_FALSE(scene.run.unbalanced.has_value());
+  EXPECT_FALSE(scene.run.time.has_value());
   EXPECT_TRUE(scene.walls.empty());
+  EXPECT_TRUE(scene.bodies.velocity.empty());
+  EXPECT_TRUE(scene.bodies.spin.empty());
+  EXPECT_TRUE(scene.histories.empty());
+  EXPECT_EQ(scene.outputs.checkpoint_every, 0);
+  EXPECT_EQ(scene.outputs.series_every, 0);
   // An empty section is the same as none.
   const model::Scene empty = read_scene_text(std::string(one_ball) + "timestep: {}\ndamping: {}\n", ".");
   EXPECT_EQ(empty.local_damping, defaults.local_damping);
@@ -131,6 +137,63 @@ TEST(ReadScene, QuantitiesWithUnitsAndRulesForAny) {
   EXPECT_TRUE(scene.contacts[1].parameters.empty());
   EXPECT_EQ(scene.rule_for(0, 1), 0);
   EXPECT_EQ(scene.rule_for(0, 0), 1);
+}
+
+TEST(ReadScene, VelocitiesAreColumnsOnlyWhereSomeBallMoves) {
+  const TemporaryFolder folder;
+  folder.write("packing.txt", packing);
+  const auto bodies_with = [&](const std::string& of_file, const std::string& of_last) {
+    return read_scene_text(
+               "materials: [{name: grain, density: 2500}]\n"
+               "contacts: [{between: [any, any], law: none}]\n"
+               "balls:\n"
+               "  - {position: [0, 0, 1], radius: 0.1, material: grain}\n"
+               "  - {file: packing.txt, material: grain" +
+                   of_file +
+                   "}\n"
+                   "  - {position: [0, 0, 2], radius: 0.1, material: grain" +
+                   of_last + "}\n",
+               folder.path())
+        .bodies;
+  };
+  const model::Bodies at_rest = bodies_with(", velocity: [0, 0, 0]", ", spin: [0, 0, 0]");
+  EXPECT_TRUE(at_rest.velocity.empty());
+  EXPECT_TRUE(at_rest.spin.empty());
+
+  const Vec3 v(0.001, 0, -2);
+  const Vec3 w(0, 0.5, 10);
+  const model::Bodies moving =
+      bodies_with(", velocity: [1 mm/s, 0, -2]", ", spin: [0, 500 mrad/s, 10], fix: [wx]");
+  EXPECT_THAT(moving.velocity, ElementsAre(Vec3(0, 0, 0), v, v, v, Vec3(0, 0, 0)));
+  EXPECT_THAT(moving.spin, ElementsAre(Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0), w));
+  EXPECT_EQ(moving.fixed[4].bits(), 0b001000);
+  EXPECT_TRUE(bodies_with("", ", velocity: [1, 0, 0]").spin.empty());
+}
+
+TEST(ReadScene, WhatARunWrites) {
+  const model::Scene scene = read_scene_text(std::string(one_ball) + R"(
+run: {time: 20 ms}
+walls: [{plane: {point: [0, 0, -1], normal: [0, 0, 1]}, material: steel}]
+histories:
+  - {file: energies.csv, every: 1e2, of: [energies, unbalanced]}
+  - {file: rest.csv, of: walls, balls: [0]}
+outputs: {checkpoint: 5000, series: 100}
+)",
+                                             ".");
+  EXPECT_FALSE(scene.run.steps.has_value());
+  EXPECT_EQ(scene.run.time, 0.02);
+  ASSERT_EQ(scene.histories.size(), 2U);
+  const model::History& energies = scene.histories[0];
+  EXPECT_EQ(energies.file, "energies.csv");
+  EXPECT_EQ(energies.every, 100);
+  EXPECT_TRUE(energies.energies && energies.unbalanced && !energies.walls);
+  EXPECT_TRUE(energies.balls.empty());
+  const model::History& rest = scene.histories[1];
+  EXPECT_EQ(rest.every, 1);
+  EXPECT_TRUE(!rest.energies && !rest.unbalanced && rest.walls);
+  EXPECT_THAT(rest.balls, ElementsAre(0));
+  EXPECT_EQ(scene.outputs.checkpoint_every, 5000);
+  EXPECT_EQ(scene.outputs.series_every, 100);
 }
 
 TEST(ReadScene, PeriodicCellWrapsTheCentres) {

@@ -49,10 +49,14 @@ std::vector<std::string> scenes_with_room() {
   const std::string box = "walls: [{box: {min: [0, 0, 0], max: [1, 1, 1]}, material: grain}]\n";
   const std::string periodic = "periodic: {box: [1, 1, 1]}\n";
   const std::string fixed = "timestep: {policy: fixed, dt: 1e-5}\n";
+  const std::string table = "histories: [{file: table.csv, of: unbalanced, balls: 0}]\n";
   const std::string no_law = "contacts: [{between: [grain, grain], law: none}]\n";
-  std::vector<std::string> scenes{materials + no_law + ball, materials + no_law + file + fixed,
-                                  materials + no_law + ball + plane, materials + no_law + ball + box,
-                                  materials + no_law + ball + periodic};
+  std::vector<std::string> scenes{materials + no_law + ball,
+                                  materials + no_law + file + fixed,
+                                  materials + no_law + ball + plane,
+                                  materials + no_law + ball + box,
+                                  materials + no_law + ball + periodic,
+                                  materials + no_law + ball + table};
   for (const contact::LawDescription& law : contact::law_descriptions()) {
     std::string needed;
     for (const KeyDescription* key : section_keys("contacts[]", law.name))

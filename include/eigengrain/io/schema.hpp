@@ -15,6 +15,7 @@ enum class KeyKind {
   quantity,      ///< a number, perhaps with a unit
   vector,        ///< three quantities
   integer,
+  integers,  ///< a list of whole numbers
   flag,
   text,   ///< a name or a path
   texts,  ///< a list of names
@@ -22,7 +23,7 @@ enum class KeyKind {
   words,  ///< a list of words out of a few
 };
 
-/// Valid values of a quantity or integer.
+/// Valid values of a quantity or integer, or of each of a vector or list of them.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "eigengrain/assembly/state.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eigengrain::io {
+
+/// Frames of a run for ParaView: FOLDER/STEM.pvd, which lists FOLDER/STEM_series/STEM_<step>.vtu.
+///
+/// A frame has a point a ball, in the order of identity, so that frames can be compared ball by ball: radius,
+/// identity, velocity, spin (where something turns), force (of all contacts, N) and contacts (number of those
+/// that act); and the fields TimeValue (s) and Step. All numbers are the run's own, to the bit.
+///
+/// Each file is there in full or not at all, and the list names only frames that are there: a run may be
+/// killed at any time.
+class Series {
+ public:
+  /// Nothing is written before the first frame, which replaces the list of an earlier run.
+  Series(std::filesystem::path folder, std::string stem);
+
+  /// At a restart from this step, once, before the first frame: takes over the list that is there, without
+  /// the frames after the step. That of the step itself stays. Throws InputError where the list is not one
+  /// that a Series has written, or names a frame that is not there.
+  void continue_from(std::int64_t step);
+
+  /// Writes the frame of the state; nothing if there is a frame of this step. Steps must increase.
+  void add(const assembly::State& state);
+
+  std::filesystem::path list_file() const { return folder_ / (stem_ + ".pvd"); }
+  std::filesystem::path frame_file(std::int64_t step) const { return folder_ / frame_name(step); }
+  /// Steps of the frames, increasing.
+  std::vector<std::int64_t> steps() const;
+
+ private:
+  struct Frame {
+    std::int64_t step = 0;
+    double time = 0;  ///< s
+  };
+
+  std::string frame_name(std::int64_t step) const;
+  std::string list_line(const Frame& frame) const;
+  std::string list_text() const;
+  std::vector<Frame> read_list(std::string_view text) const;
+  void write_list() const;
+
+  std::filesystem::path folder_;
+  std::string stem_;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace eigengrain::io

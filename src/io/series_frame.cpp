@@ -1,0 +1,158 @@
+#include "series_frame.hpp"
+
+#include "eigengrain/base/assert.hpp"
+
+#include "atomic_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace eigengrain::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
+static_assert(sizeof(Vec3) == 3 * sizeof(double));
+
+template <class T>
+constexpr std::string_view type_name = "Float64";
+template <>
+constexpr std::string_view type_name<std::int64_t> = "Int64";
+template <>
+constexpr std::string_view type_name<std::int32_t> = "Int32";
+template <>
+constexpr std::string_view type_name<std::uint8_t> = "UInt8";
+
+template <class T>
+std::string_view bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// The arrays that are appended to the XML. What each holds is computed only when it is written, so that no
+/// two of them are in memory at once.
+class AppendedArrays {
+ public:
+  /// Takes note of an array of `count` rows and returns its element.
+  template <std::invocable Make>
+  std::string add(std::string_view name, std::size_t count, Make make, std::string_view more = {}) {
+    using Value = typename std::invoke_result_t<Make>::value_type;
+    const std::uint64_t size = count * sizeof(Value);
+    const std::string components = std::is_same_v<Value, Vec3> ? R"( NumberOfComponents="3")" : "";
+    std::string element =
+        fmt::format("<DataArray type=\"{}\" Name=\"{}\"{}{} format=\"appended\" offset=\"{}\"/>\n",
+                    type_name<Value>, name, components, more, offset_);
+    offset_ += sizeof(size) + size;
+    writers_.emplace_back([size, make](AtomicFile& file) {
+      file.write({reinterpret_cast<const char*>(&size), sizeof(size)});
+      const std::vector<Value> values = make();
+      EIGENGRAIN_ASSERT(values.size() * sizeof(Value) == size, values.size(), size);
+      file.write(bytes_of(values));
+    });
+    return element;
+  }
+
+  void write(AtomicFile& file) const {
+    for (const auto& writer : writers_) writer(file);
+  }
+
+ private:
+  std::vector<std::function<void(AtomicFile&)>> writers_;
+  std::uint64_t offset_ = 0;
+};
+
+/// Rows of the bodies in the order of identity.
+std::vector<std::int32_t> rows_by_identity(const model::Bodies& bodies) {
+  std::vector<std::int32_t> rows(bodies.identity.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  std::sort(rows.begin(), rows.end(),
+            [&](std::int32_t a, std::int32_t b) { return bodies.identity[a] < bodies.identity[b]; });
+  return rows;
+}
+
+template <class T>
+std::vector<T> gathered(const std::vector<T>& column, const std::vector<std::int32_t>& rows) {
+  EIGENGRAIN_ASSERT(column.size() == rows.size(), column.size(), rows.size());
+  std::vector<T> result;
+  result.reserve(rows.size());
+  for (const std::int32_t row : rows) result.push_back(column[static_cast<std::size_t>(row)]);
+  return result;
+}
+
+/// How many contacts act on each body; one with the body's own image counts at both of its ends.
+std::vector<std::int32_t> acting_contacts(const assembly::Model& model) {
+  std::vector<std::int32_t> count(model.bodies.position.size());
+  const contact::Placement placement = model.placement();
+  model.contacts.for_each_group([&](const auto& group) {
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      const contact::Pair& pair = group.pairs[c];
+      const contact::ContactMotion motion = contact::at_rest(Kinematics::geometry(placement, pair));
+      if (!group.law.acts(motion, group.states[c])) continue;
+      ++count[static_cast<std::size_t>(pair.a)];
+      if (Kinematics::second_is_body) ++count[static_cast<std::size_t>(pair.b)];
+    }
+  });
+  return count;
+}
+
+template <class T>
+std::vector<T> numbered_from(T first, std::size_t count) {
+  std::vector<T> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
+}  // namespace
+
+void write_frame(const std::filesystem::path& file, const assembly::State& state) {
+  const model::Bodies& bodies = state.model.bodies;
+  const std::vector<std::int32_t> rows = rows_by_identity(bodies);
+  const std::size_t count = rows.size();
+  AppendedArrays arrays;
+  const auto column = [&](std::string_view name, const auto& values) {
+    return arrays.add(name, count, [&rows, from = &values] { return gathered(*from, rows); });
+  };
+
+  std::string xml =
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n";
+  constexpr std::string_view one_tuple = R"( NumberOfTuples="1")";
+  xml += arrays.add(
+      "TimeValue", 1, [&] { return std::vector{state.time}; }, one_tuple);
+  xml += arrays.add(
+      "Step", 1, [&] { return std::vector{state.step}; }, one_tuple);
+  xml += fmt::format("</FieldData>\n<Piece NumberOfPoints=\"{0}\" NumberOfCells=\"{0}\">\n", count);
+  xml += "<PointData Scalars=\"radius\">\n";
+  xml += column("radius", bodies.radius);
+  xml += column("identity", bodies.identity);
+  if (!bodies.velocity.empty()) xml += column("velocity", bodies.velocity);
+  if (!bodies.spin.empty()) xml += column("spin", bodies.spin);
+  xml += column("force", state.force);
+  xml += arrays.add("contacts", count, [&] { return gathered(acting_contacts(state.model), rows); });
+  xml += "</PointData>\n<Points>\n";
+  xml += column("Points", bodies.position);
+  xml += "</Points>\n<Cells>\n";
+  // A cell each: ParaView draws no points that belong to none.
+  constexpr std::uint8_t vtk_vertex = 1;
+  xml += arrays.add("connectivity", count, [=] { return numbered_from<std::int64_t>(0, count); });
+  xml += arrays.add("offsets", count, [=] { return numbered_from<std::int64_t>(1, count); });
+  xml += arrays.add("types", count, [=] { return std::vector<std::uint8_t>(count, vtk_vertex); });
+  xml += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+
+  AtomicFile output(file);
+  output.write(xml);
+  arrays.write(output);
+  output.write("\n</AppendedData>\n</VTKFile>\n");
+  output.commit();
+}
+
+}  // namespace eigengrain::io

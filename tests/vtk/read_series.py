@@ -1,0 +1,126 @@
+"""Frames for ParaView as VTK reads them: equal to what was written, to the last bit. Usage: read_series.py WRITER"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+try:
+    import numpy
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkObject
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+except ImportError as missing:
+    print(f"skipped, as VTK cannot be imported ({missing}); apt install python3-vtk9 python3-numpy")
+    sys.exit(77)
+
+WRITER = sys.argv.pop(1)
+STEPS = {"sliding": [0, 1, 2], "turning & more": [0, 10, 20, 30, 12345678901]}
+
+
+def same_bits(array, wanted):
+    """Whether two arrays of numbers are the same to the bit, signs of zeros included."""
+    wanted = numpy.array(wanted, dtype=array.dtype)
+    return array.shape == wanted.shape and array.tobytes() == wanted.tobytes()
+
+
+class Series(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls._folder = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls._folder.name)
+        subprocess.run([WRITER, cls.folder], check=True)
+        expected = json.loads((cls.folder / "expected.json").read_text())
+        cls.stiffness = expected["stiffness"]
+        cls.expected = expected["series"]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls._folder.cleanup()
+
+    def listed(self, stem):
+        """(time, file) of every frame that the .pvd names."""
+        root = xml.etree.ElementTree.parse(self.folder / f"{stem}.pvd").getroot()
+        self.assertEqual((root.tag, root.get("type")), ("VTKFile", "Collection"))
+        (collection,) = root
+        return [(float(each.get("timestep")), self.folder / each.get("file")) for each in collection]
+
+    def frame(self, file):
+        errors = []
+        reader = vtkXMLUnstructuredGridReader()
+        reader.AddObserver("ErrorEvent", lambda *_: errors.append(str(file)))
+        reader.SetFileName(str(file))
+        reader.Update()
+        self.assertEqual(errors, [])
+        return reader.GetOutput()
+
+    def frames(self):
+        """(grid, what it must say) of every frame."""
+        for stem, steps in STEPS.items():
+            for step, (_, file) in zip(steps, self.listed(stem)):
+                yield self.frame(file), self.expected[stem][str(step)]
+
+    def test_lists_have_every_frame_once(self):
+        for stem, steps in STEPS.items():
+            times, files = zip(*self.listed(stem))
+            self.assertEqual([file.name for file in files], [f"{stem}_{step:010}.vtu" for step in steps])
+            self.assertEqual(list(times), [self.expected[stem][str(step)]["time"] for step in steps])
+            self.assertEqual(times[0], 0)
+            folder = sorted(file.name for file in (self.folder / f"{stem}_series").iterdir())
+            self.assertEqual(folder, sorted(file.name for file in files), "nothing else lies around")
+
+    def test_points_and_arrays_are_equal_to_the_bit(self):
+        names = {"radius", "identity", "velocity", "force"}
+        for grid, wanted in self.frames():
+            self.assertTrue(same_bits(vtk_to_numpy(grid.GetPoints().GetData()), wanted["position"]))
+            data = grid.GetPointData()
+            found = {data.GetArrayName(k) for k in range(data.GetNumberOfArrays())}
+            self.assertEqual(found, names | {"contacts"} | ({"spin"} if "spin" in wanted else set()))
+            for name in found - {"contacts"}:
+                self.assertTrue(same_bits(vtk_to_numpy(data.GetArray(name)), wanted[name]), name)
+            self.assertEqual(data.GetScalars().GetName(), "radius")
+
+    def test_time_and_step(self):
+        for grid, wanted in self.frames():
+            field = grid.GetFieldData()
+            self.assertTrue(same_bits(vtk_to_numpy(field.GetArray("TimeValue")), [wanted["time"]]))
+            self.assertTrue(same_bits(vtk_to_numpy(field.GetArray("Step")), [wanted["step"]]))
+
+    def test_every_ball_is_a_vertex_cell(self):
+        for grid, wanted in self.frames():
+            count = len(wanted["radius"])
+            self.assertEqual((grid.GetNumberOfPoints(), grid.GetNumberOfCells()), (count, count))
+            for ball in range(count):
+                self.assertEqual(grid.GetCellType(ball), 1)
+                self.assertEqual(grid.GetCell(ball).GetPointId(0), ball)
+
+    def test_contacts_and_forces_are_those_of_the_overlaps(self):
+        """Counted anew from positions and radii: the clusters are frictionless, so F = k_n U along the centres."""
+        for grid, _ in self.frames():
+            x = vtk_to_numpy(grid.GetPoints().GetData())
+            data = grid.GetPointData()
+            radius = vtk_to_numpy(data.GetArray("radius"))
+            count = numpy.zeros(len(x), dtype=int)
+            force = numpy.zeros_like(x)
+            for i in range(len(x)):
+                for j in range(len(x)):
+                    distance = numpy.linalg.norm(x[i] - x[j])
+                    if i != j and distance < radius[i] + radius[j]:
+                        count[i] += 1
+                        force[i] += self.stiffness * (radius[i] + radius[j] - distance) * (x[i] - x[j]) / distance
+                overlap = radius[i] - (x[i][2] + 1.5)  # with the wall at z = -1.5
+                if overlap > 0:
+                    count[i] += 1
+                    force[i][2] += self.stiffness * overlap
+            self.assertEqual(list(vtk_to_numpy(data.GetArray("contacts"))), list(count))
+            self.assertGreater(count.sum(), 0)
+            # Sums in another order: off by a few roundings of the largest force.
+            scale = numpy.abs(force).max()
+            numpy.testing.assert_allclose(vtk_to_numpy(data.GetArray("force")), force, rtol=0, atol=1e-12 * scale)
+
+
+if __name__ == "__main__":
+    vtkObject.GlobalWarningDisplayOff()  # errors are seen by the observer
+    unittest.main()
