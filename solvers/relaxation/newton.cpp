@@ -25,6 +25,15 @@ using assembly::State;
 using petsc::Vector;
 using Solver = petsc::Owner<SNES, SNESDestroy>;
 
+/// Longest step of a body that nothing holds, in one iteration, over the reach of the list: at first, and
+/// ever.
+constexpr double first_step = 0.004;
+constexpr double greatest_step = 0.2;
+constexpr double growth = 2;
+constexpr double retreat = 4;
+/// A residual that has grown by more than this asks for a shorter step.
+constexpr double grown = 1.5;
+
 /// The equations: residual and Jacobian in the unknowns (u, R θ), all lengths, with residuals (force,
 /// moment/R), all forces, so that one norm means something for both.
 class Equations {
@@ -36,7 +45,7 @@ class Equations {
         matrix_(system_.unknowns, system_.elements),
         balance_(assembly::balance_of(state)),
         reach_(options.reach),
-        longest_step_(options.longest_step * options.reach) {
+        longest_step_(first_step * options.reach) {
     const auto bodies = static_cast<std::size_t>(state.model.bodies.size());
     moved_.translation.assign(bodies, Vec3::Zero());
     if (state.turns()) moved_.rotation.assign(bodies, Vec3::Zero());
@@ -65,6 +74,14 @@ class Equations {
     });
     EIGENGRAIN_PETSC(VecRestoreArrayRead(scale_.get(), &scale));
     EIGENGRAIN_PETSC(VecRestoreArrayWrite(r, &out));
+  }
+
+  /// A longer step after a residual that has fallen, a shorter one after one that has grown.
+  void adapt_step(double ratio_before, double ratio_now) {
+    if (ratio_now <= ratio_before)
+      longest_step_ = std::min(growth * longest_step_, greatest_step * reach_);
+    else if (ratio_now > grown * ratio_before)
+      longest_step_ /= retreat;
   }
 
   /// The consistent tangent where residual() was last asked, and the shift for the residual r there.
@@ -232,8 +249,12 @@ PetscErrorCode test_convergence(SNES solver, PetscInt iteration, PetscReal, Pets
     constexpr double hopeless = 1e3;
     Vec r = nullptr;
     EIGENGRAIN_PETSC(SNESGetFunction(solver, &r, nullptr, nullptr));
+    const double before = c.ratio;
     c.ratio = c.equations.ratio(r);
-    if (iteration == 0) c.first_ratio = c.ratio;
+    if (iteration == 0)
+      c.first_ratio = c.ratio;
+    else
+      c.equations.adapt_step(before, c.ratio);
     *reason = SNES_CONVERGED_ITERATING;
     if (c.ratio <= c.options.target)
       *reason = SNES_CONVERGED_FNORM_ABS;

@@ -114,7 +114,6 @@ class Relaxation {
       NewtonOptions wanted;
       wanted.target = std::max(newton_margin * options_.tolerance, 1.5 * result_.end.floor);
       wanted.reach = reach;
-      wanted.longest_step = options_.shift;
       const NewtonResult found = newton(state_, wanted);
       ++result_.attempts;
       result_.newton_iterations += found.iterations;

@@ -3,6 +3,7 @@
 #include "eigengrain/io/schema.hpp"
 #include "eigengrain/io/suggest.hpp"
 
+#include "interrupt.hpp"
 #include "verbs.hpp"
 
 #include <CLI/CLI.hpp>
@@ -23,7 +24,9 @@ constexpr int usage_error = 2;  // the command line
 CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& what, Options& options,
                    void (*run)(const Options&)) {
   CLI::App* verb = program.add_subcommand(name, what);
-  verb->add_option("scene", options.scene, "scene file (YAML)")->required()->type_name("SCENE.yaml");
+  verb->add_option("scene", options.scene, "scene (YAML), or a state that was saved (HDF5)")
+      ->required()
+      ->type_name("SCENE.yaml|STATE.h5");
   verb->add_option("--json", options.json, "write the result there as JSON")->type_name("FILE");
   verb->add_option("--set", options.overrides,
                    "override a key of the scene, e.g. contacts.0.kn=2e5; may be repeated")
@@ -36,6 +39,17 @@ CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string
   return verb;
 }
 
+void add_output(CLI::App& verb, Options& options) {
+  verb.add_option("--output", options.output,
+                  "folder of results; default: where the state lies, or the current one")
+      ->type_name("FOLDER");
+}
+
+void add_petsc(CLI::App& verb, Options& options, const std::string& example) {
+  verb.add_option("--petsc", options.petsc, fmt::format("options for PETSc and SLEPc, e.g. \"{}\"", example))
+      ->type_name("OPTIONS");
+}
+
 /// A word that is no verb: said plainly, with the verb that was probably meant.
 void require_known_verb(const CLI::App& program, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
@@ -46,7 +60,7 @@ void require_known_verb(const CLI::App& program, int argc, char** argv) {
                                          io::did_you_mean(argv[1], verbs), fmt::join(verbs, ", ")));
 }
 
-int run(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   CLI::App program("Discrete elements with their true stiffness matrix.", "eigengrain");
   program.set_version_flag("--version", EIGENGRAIN_VERSION);
   program.require_subcommand(1);
@@ -54,10 +68,17 @@ int run(int argc, char** argv) {
   Options options;
   add_verb(program, "check", "read a scene, report every mistake, say what the model will consist of",
            options, check);
+  add_output(*add_verb(program, "run", "the explicit cycle, to the end that the scene names", options, run),
+             options);
 #ifdef EIGENGRAIN_PETSC
-  add_verb(program, "timestep", "estimated and true critical timestep", options, timestep)
-      ->add_option("--petsc", options.petsc, "options for PETSc and SLEPc, e.g. \"-eps_ncv 80\"")
-      ->type_name("OPTIONS");
+  CLI::App* relaxing =
+      add_verb(program, "relax", "equilibrium, by explicit cycles and Newton's method", options, relax);
+  add_output(*relaxing, options);
+  add_petsc(*relaxing, options, "-relax_ksp_type gmres");
+  relaxing->add_option("--tolerance", options.tolerance, "mean unbalanced ratio to reach; default 1e-10")
+      ->check(CLI::PositiveNumber);
+  add_petsc(*add_verb(program, "timestep", "estimated and true critical timestep", options, timestep),
+            options, "-eps_ncv 80");
 #endif
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
     fmt::print("{}", io::schema_markdown());
@@ -76,6 +97,8 @@ int run(int argc, char** argv) {
     if (count > 1) fmt::print(stderr, "{} mistakes:\n", count);
     fmt::print(stderr, "{}\n", error.what());
     return failure;
+  } catch (const Interrupted& interrupt) {
+    return 128 + interrupt.signal;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "not enough memory for this scene\n");
     return failure;
@@ -90,5 +113,5 @@ int run(int argc, char** argv) {
 
 // NOLINTNEXTLINE(bugprone-exception-escape): only where a message of a failure cannot be printed either
 int main(int argc, char** argv) {
-  return eigengrain::app::run(argc, argv);
+  return eigengrain::app::run_program(argc, argv);
 }

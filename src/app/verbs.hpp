@@ -12,10 +12,14 @@ struct Options {
   std::string json;                    ///< file for the result; empty: none
   std::vector<std::string> overrides;  ///< key=value
   std::string petsc;                   ///< options for PETSc
+  std::string output;                  ///< folder of results; empty: see read_input
+  double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
 };
 
-/// Each throws InputError or SolverError; whatever returns was a success.
+/// Each throws InputError, SolverError or Interrupted; whatever returns was a success.
 void check(const Options& options);
 void timestep(const Options& options);
+void run(const Options& options);
+void relax(const Options& options);
 
 }  // namespace eigengrain::app

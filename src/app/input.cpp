@@ -1,0 +1,23 @@
+#include "input.hpp"
+
+#include "eigengrain/cycle/cycle.hpp"
+#include "eigengrain/io/scene_reader.hpp"
+#include "eigengrain/io/state_file.hpp"
+
+namespace eigengrain::app {
+
+Input read_input(const Options& options) {
+  const std::filesystem::path file = options.scene;
+  Input input;
+  input.stem = file.stem().string();
+  input.continued = io::is_state_file(file);
+  input.folder = !options.output.empty() ? std::filesystem::path(options.output)
+                 : input.continued       ? file.parent_path()
+                                         : std::filesystem::path();
+  if (input.folder.empty()) input.folder = ".";
+  input.state = input.continued ? io::read_state(file, options.overrides)
+                                : cycle::start(io::read_scene(file, options.overrides));
+  return input;
+}
+
+}  // namespace eigengrain::app

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "eigengrain/assembly/state.hpp"
+
+#include "verbs.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace eigengrain::app {
+
+/// What a verb is asked about: a scene, or a state that an earlier run saved.
+struct Input {
+  assembly::State state;
+  bool continued = false;        ///< from a state file
+  std::string stem;              ///< of the names of results
+  std::filesystem::path folder;  ///< of results
+};
+
+/// Reads a scene (and starts it) or a state. Results go to --output, else to where a state lies, else to the
+/// current folder.
+Input read_input(const Options& options);
+
+}  // namespace eigengrain::app

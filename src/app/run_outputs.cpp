@@ -1,0 +1,88 @@
+#include "run_outputs.hpp"
+
+#include "eigengrain/assembly/balance.hpp"
+#include "eigengrain/assembly/energies.hpp"
+#include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/io/state_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <system_error>
+
+namespace eigengrain::app {
+namespace {
+
+using assembly::State;
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    throw InputError(fmt::format("--output {}: the folder cannot be made ({}); name one that can be written",
+                                 folder.string(), problem.message()));
+}
+
+/// The first multiple of `every` after the step.
+std::int64_t next_multiple(std::int64_t step, std::int64_t every) {
+  return every > 0 ? (step / every + 1) * every : std::numeric_limits<std::int64_t>::max();
+}
+
+io::HistoryValues values_for(const model::History& history, const State& state) {
+  io::HistoryValues values;
+  if (history.energies) {
+    const assembly::Energies e = assembly::energies_of(state);
+    values.energies = {e.kinetic, e.elastic, e.gravitational};
+  }
+  if (history.unbalanced) {
+    const assembly::Balance b = assembly::balance_of(state);
+    values.unbalanced = {b.mean, b.max};
+  }
+  if (history.walls) values.wall_forces = assembly::wall_forces(state.model);
+  return values;
+}
+
+}  // namespace
+
+RunOutputs::RunOutputs(const Input& input)
+    : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
+  make_folder(input.folder);
+  const std::int64_t step = input.state.step;
+  if (choice_.series_every > 0) {
+    series_.emplace(input.folder, input.stem);
+    if (input.continued && std::filesystem::exists(series_->list_file())) series_->continue_from(step);
+  }
+  for (const model::History& history : input.state.settings.histories) {
+    const bool there = input.continued && std::filesystem::exists(input.folder / history.file);
+    histories_.emplace_back(input.folder, history, input.state.model.walls,
+                            there ? std::optional(step) : std::nullopt);
+  }
+}
+
+std::int64_t RunOutputs::next(std::int64_t step) const {
+  std::int64_t next =
+      std::min(next_multiple(step, choice_.checkpoint_every), next_multiple(step, choice_.series_every));
+  for (const io::HistoryFile& history : histories_)
+    next = std::min(next, next_multiple(step, history.history().every));
+  return next;
+}
+
+void RunOutputs::write_due(const State& state) {
+  if (series_ && state.step % choice_.series_every == 0) series_->add(state);
+  for (io::HistoryFile& history : histories_)
+    if (history.due(state.step)) history.add(state, values_for(history.history(), state));
+}
+
+bool RunOutputs::checkpoint_due(std::int64_t step) const {
+  return choice_.checkpoint_every > 0 && step % choice_.checkpoint_every == 0;
+}
+
+void RunOutputs::save(const State& state) {
+  for (io::HistoryFile& history : histories_) history.sync();
+  io::write_state(state, state_file_);
+  saved_step_ = state.step;
+}
+
+}  // namespace eigengrain::app

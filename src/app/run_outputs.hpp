@@ -1,0 +1,41 @@
+#pragma once
+
+#include "eigengrain/io/history.hpp"
+#include "eigengrain/io/series.hpp"
+
+#include "input.hpp"
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <optional>
+
+namespace eigengrain::app {
+
+/// All that a run writes: its state (FOLDER/STEM.h5), frames for ParaView, and histories.
+class RunOutputs {
+ public:
+  /// Makes the folder; takes over what an earlier part of the run has written.
+  explicit RunOutputs(const Input& input);
+
+  /// The first step after this one at which something is due.
+  std::int64_t next(std::int64_t step) const;
+  /// Frames and lines that are due at the state's step.
+  void write_due(const assembly::State& state);
+  bool checkpoint_due(std::int64_t step) const;
+  /// Saves the state, after all that was written before it.
+  void save(const assembly::State& state);
+
+  const std::filesystem::path& state_file() const { return state_file_; }
+  /// The step of the state that was saved last.
+  std::int64_t saved_step() const { return saved_step_; }
+
+ private:
+  model::OutputChoice choice_;
+  std::filesystem::path state_file_;
+  std::int64_t saved_step_ = 0;
+  std::optional<io::Series> series_;
+  std::deque<io::HistoryFile> histories_;
+};
+
+}  // namespace eigengrain::app

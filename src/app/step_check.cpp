@@ -1,0 +1,41 @@
+#include "step_check.hpp"
+
+#include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/cycle/bounds.hpp"
+#ifdef EIGENGRAIN_PETSC
+#include "eigengrain/timestep/truth.hpp"
+#endif
+
+#include <fmt/format.h>
+
+namespace eigengrain::app {
+
+StepVerdict judge_step(const assembly::State& state, double dt) {
+  const assembly::LinearSystem system(state.model);
+  const double damping = state.model.local_damping;
+  StepVerdict verdict{.dt = dt, .limit = cycle::damped_timestep(cycle::scaled_block_bound(system), damping)};
+  verdict.safe = verdict.proven = dt <= verdict.limit;
+  if (verdict.safe) return verdict;
+#ifdef EIGENGRAIN_PETSC
+  verdict.limit = timestep::critical_timestep(system, damping).limit;
+  verdict.exact = true;
+  verdict.safe = dt <= verdict.limit;
+#endif
+  return verdict;
+}
+
+std::string warning_of(const StepVerdict& verdict) {
+  if (verdict.safe) return {};
+  if (!verdict.exact)
+    return fmt::format(
+        "WARNING: the step of {:.6e} s is {:.3f} times what is proven to be stable here ({:.6e} s); take "
+        "timestep: {{policy: bound}}",
+        verdict.dt, verdict.dt / verdict.limit, verdict.limit);
+  return fmt::format(
+      "WARNING: the step of {:.6e} s is {:.3f} times the true limit of this scene ({:.6e} s): the cycle will "
+      "blow "
+      "up. Take a smaller one, or timestep: {{policy: bound}}",
+      verdict.dt, verdict.dt / verdict.limit, verdict.limit);
+}
+
+}  // namespace eigengrain::app

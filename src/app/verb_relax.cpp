@@ -1,0 +1,72 @@
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/io/state_file.hpp"
+#include "eigengrain/petsc/session.hpp"
+#include "eigengrain/relaxation/relax.hpp"
+
+#include "input.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "state_report.hpp"
+#include "text.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+namespace eigengrain::app {
+namespace {
+
+using assembly::State;
+using relaxation::RelaxResult;
+
+nlohmann::ordered_json to_json(const RelaxResult& result, const State& state) {
+  nlohmann::ordered_json report{{"converged", result.converged},
+                                {"method", result.method},
+                                {"steps", result.explicit_steps},
+                                {"iterations", result.newton_iterations},
+                                {"linear_iterations", result.linear_iterations},
+                                {"attempts", result.attempts},
+                                {"time", state.time},
+                                {"seconds", result.seconds},
+                                {"explicit_seconds", result.explicit_seconds},
+                                {"start", {{"mean", result.start.mean}, {"max", result.start.max}}}};
+  add_balance(report, result.end);
+  add_energies(report, state);
+  return report;
+}
+
+}  // namespace
+
+void relax(const Options& options) {
+  if (!options.petsc.empty()) petsc::set_options(options.petsc);
+  Input input = read_input(options);
+  print_notes(input.state.settings);
+  petsc::start();  // before the clock
+  note_interrupts();
+  relaxation::RelaxOptions wanted;
+  wanted.tolerance = options.tolerance;
+  wanted.report = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+  wanted.interrupted = [] { return interrupted() != 0; };
+  const RelaxResult result = relaxation::relax(input.state, wanted);
+  if (!options.petsc.empty()) petsc::require_options_used();
+
+  std::filesystem::create_directories(input.folder);
+  const std::filesystem::path file = input.folder / (input.stem + "-relaxed.h5");
+  io::write_state(input.state, file);
+  auto report = to_json(result, input.state);
+  report["state"] = file.string();
+  write_json(options.json, report);
+  fmt::print("{}: {} in {} ({}), {} of Newton\n{}\nstate: {}\n", input.state.settings.name,
+             counted(result.explicit_steps, "explicit step", "explicit steps"), duration_text(result.seconds),
+             result.method.empty() ? "nothing to do" : result.method,
+             counted(result.newton_iterations, "iteration", "iterations"), balance_text(result.end),
+             file.string());
+  if (interrupted() != 0) throw Interrupted{interrupted()};
+  if (!result.converged)
+    throw SolverError(fmt::format("no equilibrium within {:g} was found; the nearest state is in {}",
+                                  options.tolerance, file.string()));
+}
+
+}  // namespace eigengrain::app

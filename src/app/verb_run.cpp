@@ -1,0 +1,192 @@
+#include "eigengrain/assembly/balance.hpp"
+#include "eigengrain/assembly/energies.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/timer.hpp"
+#include "eigengrain/cycle/cycle.hpp"
+#include "eigengrain/cycle/policy.hpp"
+#include "eigengrain/cycle/watch.hpp"
+
+#include "input.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "run_outputs.hpp"
+#include "state_report.hpp"
+#include "step_check.hpp"
+#include "text.hpp"
+#include "verbs.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+namespace eigengrain::app {
+namespace {
+
+using assembly::State;
+
+/// Steps between looks at the state: for a blow-up, and at the unbalanced ratio. A look costs about two
+/// steps.
+constexpr std::int64_t steps_between_looks = 100;
+
+/// When a run is over.
+class Goal {
+ public:
+  explicit Goal(const model::RunChoice& run) : run_(run) {
+    if (!run.steps && !run.time && !run.unbalanced)
+      throw InputError(
+          "the scene does not say how far to run; add run: {steps: 10000} to it, or --set run.steps=10000");
+  }
+  bool reached(const State& state) const {
+    return (run_.steps && state.step >= *run_.steps) || (run_.time && state.time >= *run_.time) || balanced_;
+  }
+  bool wants_balance() const { return run_.unbalanced.has_value(); }
+  void look(const assembly::Balance& balance) {
+    balanced_ = balance.unsupported == 0 && balance.contacts > 0 && balance.mean < *run_.unbalanced;
+  }
+  /// Steps up to the one that ends the run; it may end sooner.
+  std::int64_t last_step() const { return run_.steps.value_or(std::numeric_limits<std::int64_t>::max()); }
+  /// Whether an end by steps or time left a wish for balance open.
+  bool missed() const { return run_.unbalanced && !balanced_; }
+  double fraction(const State& state) const {
+    double done = -1;
+    if (run_.steps) done = static_cast<double>(state.step) / static_cast<double>(*run_.steps);
+    if (run_.time) done = std::max(done, state.time / *run_.time);
+    return done;
+  }
+
+ private:
+  model::RunChoice run_;
+  bool balanced_ = false;
+};
+
+/// Ends a run that has gone wrong, with all that helps to find out why.
+[[noreturn]] void give_up(const cycle::Trouble& trouble, const State& state, const RunOutputs& outputs,
+                          const StepVerdict& verdict) {
+  std::string names;
+  for (const std::int64_t body : trouble.bodies)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", body);
+  const std::string cause =
+      verdict.safe
+          ? std::string(
+                "the step is within the limit of the contacts as they were: look for bodies that are pressed "
+                "into each other, or for loads far beyond their stiffness")
+          : fmt::format(
+                "the step of {:.3e} s is {:.3f} times {} of {:.3e} s; take timestep: {{policy: bound}}",
+                verdict.dt, verdict.dt / verdict.limit,
+                verdict.exact ? "the true limit" : "what is proven stable,", verdict.limit);
+  throw SolverError(fmt::format(
+      "the run blew up before step {}: {} (balls {})\nlikely cause: {}\nlast good state: step {} in {}",
+      state.step, trouble.what, names, cause, outputs.saved_step(), outputs.state_file().string()));
+}
+
+/// One run, from an input to its goal.
+class Run {
+ public:
+  explicit Run(Input input)
+      : goal_(input.state.settings.run),
+        outputs_(input),
+        cycle_(std::move(input.state), cycle::policy_of(input.state.settings)),
+        watch_(cycle_.state()),
+        verdict_(judge_step(state(), state().next_dt)),
+        first_step_(state().step) {}
+
+  void go() {
+    note_interrupts();
+    outputs_.write_due(state());
+    outputs_.save(state());
+    if (goal_.wants_balance()) goal_.look(assembly::balance_of(state()));
+    while (!goal_.reached(state()) && interrupted() == 0) {
+      const std::int64_t target = std::min({next_look(), outputs_.next(state().step), goal_.last_step()});
+      const Stopwatch watch;
+      while (state().step < target && !goal_.reached(state()) && interrupted() == 0) cycle_.step();
+      seconds_ += watch.seconds();
+      attend();
+    }
+    look();
+    outputs_.save(state());
+    progress_.finish();
+  }
+
+  const State& state() const { return cycle_.state(); }
+  const StepVerdict& verdict() const { return verdict_; }
+  const Goal& goal() const { return goal_; }
+  const RunOutputs& outputs() const { return outputs_; }
+  std::int64_t steps() const { return state().step - first_step_; }
+  double seconds() const { return seconds_; }
+
+ private:
+  std::int64_t next_look() const { return (state().step / steps_between_looks + 1) * steps_between_looks; }
+
+  void look() {
+    if (const auto trouble = watch_.look(state())) {
+      progress_.finish();
+      give_up(*trouble, state(), outputs_, verdict_);
+    }
+  }
+
+  /// What is due at the step that was reached. States are only saved after a look.
+  void attend() {
+    const std::int64_t step = state().step;
+    const bool save = outputs_.checkpoint_due(step);
+    if (step % steps_between_looks == 0 || save) {
+      look();
+      if (goal_.wants_balance() && step % steps_between_looks == 0) goal_.look(assembly::balance_of(state()));
+      progress_.show(goal_.fraction(state()),
+                     fmt::format("step {}, t = {:.6g} s", grouped(step), state().time));
+    }
+    outputs_.write_due(state());
+    if (save) outputs_.save(state());
+  }
+
+  Goal goal_;
+  RunOutputs outputs_;
+  cycle::Cycle cycle_;
+  cycle::Watch watch_;
+  StepVerdict verdict_;
+  Progress progress_;
+  std::int64_t first_step_;
+  double seconds_ = 0;  ///< of the cycle alone
+};
+
+}  // namespace
+
+void run(const Options& options) {
+  Input input = read_input(options);
+  print_notes(input.state.settings);
+  Run run(std::move(input));
+  if (const std::string warning = warning_of(run.verdict()); !warning.empty())
+    fmt::print(stderr, "{}\n", warning);
+  run.go();
+
+  const State& state = run.state();
+  const assembly::Balance balance = assembly::balance_of(state);
+  const double rate = run.seconds() > 0 ? static_cast<double>(run.steps()) *
+                                              static_cast<double>(state.model.bodies.size()) / run.seconds()
+                                        : 0.0;
+  nlohmann::ordered_json report{{"steps", run.steps()},        {"step", state.step},
+                                {"time", state.time},          {"dt", state.dt},
+                                {"seconds", run.seconds()},    {"particle_steps_per_second", rate},
+                                {"lists", state.list.rebuilds}};
+  add_balance(report, balance);
+  add_energies(report, state);
+  report["state"] = run.outputs().state_file().string();
+  write_json(options.json, report);
+
+  fmt::print("{}: {} in {}, t = {:.6g} s", state.settings.name, counted(run.steps(), "step", "steps"),
+             duration_text(run.seconds()), state.time);
+  if (rate > 0) fmt::print(", {:.3g} million ball steps a second", 1e-6 * rate);
+  fmt::print("\n{}\nstate: {}\n", balance_text(balance), run.outputs().state_file().string());
+  if (interrupted() != 0) {
+    fmt::print(stderr, "interrupted; continue with: eigengrain run {}\n",
+               run.outputs().state_file().string());
+    throw Interrupted{interrupted()};
+  }
+  if (run.goal().missed())
+    fmt::print("the unbalanced ratio wished for ({:g}) was not reached in that time\n",
+               *state.settings.run.unbalanced);
+}
+
+}  // namespace eigengrain::app
