@@ -191,8 +191,7 @@ bool File::has(const std::string& path) const {
 void File::write_rows(const std::string& path, Number number, const void* data, std::size_t rows,
                       int components) {
   const std::vector<hsize_t> shape = shape_of(rows, components);
-  const Space space(
-      EIGENGRAIN_HDF5(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)));
+  const Space space(EIGENGRAIN_HDF5(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)));
   const Dataset dataset = create_dataset(file_.get(), path, type_in_file(number), space);
   if (rows == 0) return;
   EIGENGRAIN_HDF5(H5Dwrite(dataset.get(), type_in_memory(number), H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
@@ -234,8 +233,8 @@ void File::require_rows(const std::string& path, Number number, std::size_t rows
   const std::vector<hsize_t> shape = shape_of(dataset);
   const std::vector<hsize_t> wanted = shape_of(rows, components);
   if (shape != wanted)
-    throw Error(fmt::format("the dataset {} has the shape {}, not {}", path, shape_text(shape),
-                            shape_text(wanted)));
+    throw Error(
+        fmt::format("the dataset {} has the shape {}, not {}", path, shape_text(shape), shape_text(wanted)));
 }
 
 void File::read_rows(const std::string& path, Number number, void* data, std::size_t rows) const {
