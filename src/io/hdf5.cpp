@@ -73,8 +73,7 @@ std::string without_padding(std::string text) {
   return text;
 }
 
-/// Files are read by one process, or written under a name of its own: locks only fail where a file system
-/// has none.
+/// Files change by renaming only, so they need no locks, and some file systems have none.
 Properties access() {
   Properties properties(EIGENGRAIN_HDF5(H5Pcreate(H5P_FILE_ACCESS)));
   EIGENGRAIN_HDF5(H5Pset_file_locking(properties.get(), false, true));
@@ -167,16 +166,22 @@ Silence::~Silence() {
   H5Eset_auto2(H5E_DEFAULT, function_, data_);
 }
 
-File File::create(const std::filesystem::path& file) {
-  return File(EIGENGRAIN_HDF5(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access().get())));
+File File::create_in_memory(std::size_t increment) {
+  const Properties properties(EIGENGRAIN_HDF5(H5Pcreate(H5P_FILE_ACCESS)));
+  EIGENGRAIN_HDF5(H5Pset_fapl_core(properties.get(), increment, false));
+  return File(EIGENGRAIN_HDF5(H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, properties.get())));
 }
 
 File File::open(const std::filesystem::path& file) {
   return File(EIGENGRAIN_HDF5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access().get())));
 }
 
-void File::close() {
-  EIGENGRAIN_HDF5(file_.close_now());
+std::span<const char> File::image() const {
+  EIGENGRAIN_HDF5(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL));
+  const auto size = EIGENGRAIN_HDF5(H5Fget_file_image(file_.get(), nullptr, 0));
+  void* handle = nullptr;  // of the driver for memory: where it keeps the address of the file
+  EIGENGRAIN_HDF5(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &handle));
+  return {*static_cast<const char**>(handle), static_cast<std::size_t>(size)};
 }
 
 void File::add_group(const std::string& path) {

@@ -64,8 +64,6 @@ class Owner {
   Owner& operator=(const Owner&) = delete;
 
   hid_t get() const { return id_; }
-  /// Closes now and says whether that went well, which a destructor cannot.
-  herr_t close_now() { return close(std::exchange(id_, -1)); }
 
  private:
   hid_t id_;
@@ -114,12 +112,14 @@ struct Row<model::FixedComponents> {
 /// An open file. Paths begin at its root, as in "/bodies/position".
 class File {
  public:
-  /// Takes the place of a file that exists.
-  static File create(const std::filesystem::path& file);
+  /// A new file that is in memory only: where a disk is full, HDF5 fails to close a file and crashes when the
+  /// program ends (seen with 1.10.8), so it never gets to write on one. Memory grows by so many bytes.
+  static File create_in_memory(std::size_t increment);
   static File open(const std::filesystem::path& file);
-  /// Throws if what was written cannot be kept.
-  void close();
   hid_t id() const { return file_.get(); }
+
+  /// All of a file in memory as it would be on a disk; until something else is written or it is closed.
+  std::span<const char> image() const;
 
   void add_group(const std::string& path);
   /// Whether something stands there; its group has to exist.

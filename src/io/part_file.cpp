@@ -58,7 +58,7 @@ PartFile::PartFile(const fs::path& target) : target_(target), path_(target) {
   std::error_code ignored;
   if (fs::is_directory(target, ignored)) fail(target, EISDIR);
   path_ += fmt::format(".part-{}", ::getpid());
-  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail(target_, errno);
 }
 
@@ -68,15 +68,18 @@ PartFile::~PartFile() {
   if (!published_) fs::remove(path_, ignored);
 }
 
-void PartFile::reserve(std::uint64_t bytes) const {
-  if (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) == 0) return;
-  if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) fail(target_, errno);
+void PartFile::write(std::span<const char> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written >= 0)
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    else if (errno != EINTR)
+      fail(target_, errno);
+  }
 }
 
 void PartFile::publish() {
-  // To its own length: gives back what was reserved and not needed.
-  const off_t length = ::lseek(descriptor_, 0, SEEK_END);
-  if (length < 0 || ::ftruncate(descriptor_, length) != 0 || ::fsync(descriptor_) != 0) fail(target_, errno);
+  if (::fsync(descriptor_) != 0) fail(target_, errno);
   if (::close(std::exchange(descriptor_, -1)) != 0) fail(target_, errno);
   if (::rename(path_.c_str(), target_.c_str()) != 0) fail(target_, errno);
   published_ = true;

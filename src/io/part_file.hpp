@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
+#include <span>
 
 namespace eigengrain::io {
 
@@ -14,10 +14,7 @@ class PartFile {
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
-  const std::filesystem::path& path() const { return path_; }
-  /// Takes space on the disk without changing the file's length, so that a full disk shows before anything
-  /// is written. Does nothing where the file system cannot.
-  void reserve(std::uint64_t bytes) const;
+  void write(std::span<const char> bytes) const;
   /// Renames to the target. What was written is on the disk before, the new name after.
   void publish();
 

@@ -81,19 +81,15 @@ std::ifstream open_to_read(const std::filesystem::path& file) {
 
 }  // namespace
 
-void seal_file(const std::filesystem::path& file) {
-  const std::uint64_t length = std::filesystem::file_size(file);
-  std::ifstream input = open_to_read(file);
-  Checksum sum = checksum_of(input, length);
-  std::array<char, seal_size> seal{};
-  std::memcpy(seal.data(), mark.data(), mark.size());
-  std::memcpy(seal.data() + mark.size(), &length, sizeof length);
-  sum.add(std::span(seal).first(checksum_at));
+std::string seal_of(std::span<const char> bytes) {
+  const std::uint64_t length = bytes.size();
+  std::string seal(mark);
+  seal.append(reinterpret_cast<const char*>(&length), sizeof length);
+  Checksum sum;
+  sum.add(bytes);
+  sum.add(seal);
   const std::uint32_t value = sum.value();
-  std::memcpy(seal.data() + checksum_at, &value, sizeof value);
-  std::ofstream output(file, std::ios::binary | std::ios::app);
-  output.write(seal.data(), seal.size());
-  if (!output.flush()) fail("write");
+  return seal.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 Seal check_seal(const std::filesystem::path& file) {

@@ -13,7 +13,7 @@
 
 #include <cstring>
 #include <ctime>
-#include <system_error>
+#include <string>
 #include <type_traits>
 
 namespace eigengrain::io {
@@ -26,10 +26,9 @@ constexpr std::string_view compiler = "GCC " __VERSION__;
 #endif
 
 /// Bytes that the file will take at most: its numbers, and room for HDF5's own structures.
-std::uint64_t largest_size(const assembly::State& state) {
-  constexpr std::uint64_t body = sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + 8;
-  std::uint64_t size =
-      (1U << 20U) + state.settings.document.size() + body * state.model.bodies.position.size();
+std::size_t largest_size(const assembly::State& state) {
+  constexpr std::size_t body = sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + 8;
+  std::size_t size = (1U << 20U) + state.settings.document.size() + body * state.model.bodies.position.size();
   state.model.contacts.for_each_group([&](const auto& group) {
     size += (1U << 14U) + group.pairs.size() * (sizeof(contact::Pair) + sizeof(group.states[0]));
   });
@@ -130,14 +129,12 @@ void write_state(const assembly::State& state, const std::filesystem::path& file
   PartFile part(file);
   const h5::Silence silence;
   try {
-    h5::File hdf5 = h5::File::create(part.path());
-    part.reserve(largest_size(state));
+    h5::File hdf5 = h5::File::create_in_memory(largest_size(state));
     write_contents(state, hdf5);
-    hdf5.close();
-    seal_file(part.path());
+    const std::span<const char> image = hdf5.image();
+    part.write(image);
+    part.write(seal_of(image));
   } catch (const h5::Error& error) {
-    throw SolverError(fmt::format("{}: the state cannot be written: {}", file.string(), error.what()));
-  } catch (const std::system_error& error) {
     throw SolverError(fmt::format("{}: the state cannot be written: {}", file.string(), error.what()));
   }
   part.publish();

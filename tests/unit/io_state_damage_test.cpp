@@ -13,10 +13,11 @@ class StateDamage : public testing::Test {
  protected:
   StateDamage() : state_(arbitrary_state(busy())), file_(folder_.path() / "state.h5") {
     write_state(state_, file_);
+    whole_ = contents(file_);
   }
   /// What is said to the file after a change of its HDF5 part.
   std::string after(const std::function<void(hid_t)>& change) {
-    write_state(state_, file_);
+    folder_.write("state.h5", whole_);
     rewrite(file_, change);
     return refusal(file_);
   }
@@ -36,6 +37,7 @@ class StateDamage : public testing::Test {
   TemporaryFolder folder_;
   assembly::State state_;
   std::filesystem::path file_;
+  std::string whole_;
 };
 
 TEST_F(StateDamage, WhatIsNoState) {
@@ -49,8 +51,9 @@ TEST_F(StateDamage, WhatIsNoState) {
   EXPECT_FALSE(is_state_file(folder_.path()));
   const auto empty = folder_.write("empty.h5", "");
   EXPECT_THAT(refusal(empty), HasSubstr("no state file"));
-  h5::File::create(folder_.path() / "other.h5").close();
-  EXPECT_THAT(refusal(folder_.path() / "other.h5"), HasSubstr("no state of Eigengrain"));
+  const auto other = folder_.path() / "other.h5";
+  H5Fclose(H5Fcreate(other.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
+  EXPECT_THAT(refusal(other), HasSubstr("no state of Eigengrain"));
 }
 
 TEST_F(StateDamage, OtherSchemas) {
@@ -120,29 +123,27 @@ TEST_F(StateDamage, ImpossibleNumbers) {
 }
 
 TEST_F(StateDamage, CutShort) {
-  const std::string whole = contents(file_);
   std::mt19937_64 random(3);
   std::vector<std::size_t> lengths;
   for (std::size_t length = 0; length < 300; ++length) lengths.push_back(length);
-  for (std::size_t length = whole.size() - 60; length < whole.size(); ++length) lengths.push_back(length);
-  for (int k = 0; k < 300; ++k) lengths.push_back(random() % whole.size());
+  for (std::size_t length = whole_.size() - 60; length < whole_.size(); ++length) lengths.push_back(length);
+  for (int k = 0; k < 300; ++k) lengths.push_back(random() % whole_.size());
   for (const std::size_t length : lengths) {
-    folder_.write("cut.h5", std::string_view(whole).substr(0, length));
+    folder_.write("cut.h5", std::string_view(whole_).substr(0, length));
     EXPECT_NE(refusal(folder_.path() / "cut.h5"), "") << length;
   }
-  folder_.write("long.h5", whole + '\0');
+  folder_.write("long.h5", whole_ + '\0');
   EXPECT_NE(refusal(folder_.path() / "long.h5"), "");
 }
 
 TEST_F(StateDamage, AFlippedByte) {
-  const std::string whole = contents(file_);
   std::mt19937_64 random(5);
   std::vector<std::size_t> places;
   for (std::size_t at = 0; at < 200; ++at) places.push_back(at);
-  for (std::size_t at = whole.size() - 40; at < whole.size(); ++at) places.push_back(at);
-  for (int k = 0; k < 2000; ++k) places.push_back(random() % whole.size());
+  for (std::size_t at = whole_.size() - 40; at < whole_.size(); ++at) places.push_back(at);
+  for (int k = 0; k < 2000; ++k) places.push_back(random() % whole_.size());
   for (const std::size_t at : places) {
-    std::string damaged = whole;
+    std::string damaged = whole_;
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << (random() % 8)));
     folder_.write("damaged.h5", damaged);
     EXPECT_NE(refusal(folder_.path() / "damaged.h5"), "") << at;
@@ -151,20 +152,24 @@ TEST_F(StateDamage, AFlippedByte) {
 
 /// Where the seal is lost as well, HDF5 itself is the judge: it may not crash, nor may the file pass.
 TEST_F(StateDamage, WithoutASeal) {
-  std::string whole = contents(file_);
-  whole.resize(whole.size() - 20);
-  folder_.write("unsealed.h5", whole);
+  folder_.write("unsealed.h5", std::string_view(whole_).substr(0, whole_.size() - 20));
   EXPECT_THAT(refusal(folder_.path() / "unsealed.h5"), HasSubstr("checksum at its end is missing"));
 }
 
-/// The check value of CRC-32 in every catalogue of such sums: that of "123456789" is CBF43926.
-TEST(Seal, IsTheCrcThatOthersCompute) {
+/// Expected values from Python: zlib.crc32(text + b"EGR-SEAL" + len(text).to_bytes(8, "little")).
+TEST(Seal, HasTheCrcThatOthersCompute) {
   const TemporaryFolder folder;
-  const auto file = folder.write("text", "");
-  seal_file(file);
-  // zlib.crc32(b"EGR-SEAL" + bytes(8)) of Python
-  EXPECT_EQ(contents(file).substr(0, 16), std::string("EGR-SEAL") + std::string(8, '\0'));
-  EXPECT_EQ(check_seal(file), Seal::intact);
+  for (const auto& [text, crc] : {std::pair<std::string, std::uint32_t>{"", 2121634233U},
+                                  std::pair<std::string, std::uint32_t>{"123456789", 366999062U}}) {
+    const auto file = folder.write("text", text);
+    seal(file);
+    EXPECT_EQ(check_seal(file), Seal::intact);
+    const std::string sealed = contents(file);
+    ASSERT_EQ(sealed.size(), text.size() + 20);
+    std::uint32_t found = 0;
+    std::memcpy(&found, &sealed[text.size() + 16], sizeof found);
+    EXPECT_EQ(found, crc);
+  }
 }
 
 }  // namespace

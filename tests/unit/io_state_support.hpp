@@ -9,6 +9,7 @@
 #include "io/seal.hpp"
 #include "unit/io_support.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -168,6 +169,11 @@ inline std::string contents(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(input), {}};
 }
 
+inline void seal(const std::filesystem::path& file) {
+  const std::string text = contents(file);
+  std::ofstream(file, std::ios::binary | std::ios::app) << seal_of(text);
+}
+
 /// Changes the HDF5 part of a state file and seals it again, as a program with a bug would have written it.
 inline void rewrite(const std::filesystem::path& file, const std::function<void(hid_t)>& change) {
   const std::string text = contents(file);
@@ -176,7 +182,7 @@ inline void rewrite(const std::filesystem::path& file, const std::function<void(
   ASSERT_GE(id, 0);
   change(id);
   ASSERT_GE(H5Fclose(id), 0);
-  seal_file(file);
+  seal(file);
 }
 
 }  // namespace eigengrain::io

@@ -11,8 +11,8 @@
 namespace eigengrain::io {
 
 /// Writes the state. The file appears whole or not at all: until then, and on any failure, what was there
-/// before stays. Throws InputError where the file cannot be made or kept, and SolverError with HDF5's own
-/// description where it fails.
+/// before stays. Takes as much memory as the file gets bytes. Throws InputError where the file cannot be made
+/// or kept, and SolverError with HDF5's own description where it fails.
 void write_state(const assembly::State& state, const std::filesystem::path& file);
 
 /// Reads a state. `overrides` act on its settings as they do on a scene (scene_reader.hpp); laws take their
