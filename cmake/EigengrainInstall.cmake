@@ -10,13 +10,13 @@ install(EXPORT EigengrainTargets NAMESPACE eigengrain:: DESTINATION ${EIGENGRAIN
 
 # Headers of folders that are not built do not install: nothing would be there to link with.
 set(solver_headers PATTERN petsc EXCLUDE PATTERN timestep EXCLUDE PATTERN relaxation EXCLUDE PATTERN spectrum EXCLUDE)
-set(finders)
+set(finders cmake/FindHDF5MPI.cmake)
 if(EIGENGRAIN_PETSC)
   # A file of its own, so that who asks for core or cycle only needs no PETSc.
   install(TARGETS eigengrain_solvers EXPORT EigengrainSolversTargets ARCHIVE)
   install(EXPORT EigengrainSolversTargets NAMESPACE eigengrain:: DESTINATION ${EIGENGRAIN_PACKAGE_DIR})
   set(solver_headers)
-  set(finders cmake/FindPETSc.cmake cmake/FindSLEPc.cmake)
+  list(APPEND finders cmake/FindPETSc.cmake cmake/FindSLEPc.cmake)
 endif()
 install(DIRECTORY include/eigengrain DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.hpp" ${solver_headers})

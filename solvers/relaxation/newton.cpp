@@ -28,7 +28,7 @@ using Solver = petsc::Owner<SNES, SNESDestroy>;
 /// Longest step of a body that nothing holds, in one iteration, over the reach of the list: at first, and
 /// ever.
 constexpr double first_step = 0.004;
-constexpr double greatest_step = 0.2;
+constexpr double greatest_step = 0.02;
 constexpr double growth = 2;
 constexpr double retreat = 4;
 /// A residual that has grown by more than this asks for a shorter step.
@@ -246,7 +246,7 @@ PetscErrorCode test_convergence(SNES solver, PetscInt iteration, PetscReal, Pets
                                 SNESConvergedReason* reason, void* context) {
   auto& c = *static_cast<Context*>(context);
   return c.guarded([&] {
-    constexpr double hopeless = 1e3;
+    constexpr double hopeless = 30;
     Vec r = nullptr;
     EIGENGRAIN_PETSC(SNESGetFunction(solver, &r, nullptr, nullptr));
     const double before = c.ratio;
@@ -325,9 +325,8 @@ NewtonResult newton(State& state, const NewtonOptions& options) {
   result.iterations = static_cast<int>(iterations);
   result.linear_iterations = static_cast<int>(linear_iterations);
   result.converged = reason > 0;
-  // Where bodies had to stop at the edge of the list, what was gained is kept, and a new list goes on from
-  // there.
-  result.unfinished = !result.converged && context.out_of_room && context.ratio <= context.first_ratio;
+  // What was gained is kept, and a new list goes on from there.
+  result.unfinished = !result.converged && context.ratio < 0.5 * context.first_ratio;
   if (result.converged || result.unfinished) {
     Vector r;
     EIGENGRAIN_PETSC(VecDuplicate(x.get(), r.put()));

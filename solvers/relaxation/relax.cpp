@@ -23,13 +23,22 @@ constexpr double explicit_damping = 0.7;
 constexpr double explicit_safety = 0.95;  // of a proven bound
 constexpr std::int64_t steps_between_looks = 100;
 constexpr std::int64_t steps_between_reports = 1000;
+/// Reach of Newton's list over the skin of the cycle's.
+constexpr double newton_reach = 4;
 /// Lists of contacts that Newton may use up before explicit cycles go on.
 constexpr int most_lists = 20;
 /// Newton is asked for this part of what is wished, so that the commit's rounding does not undo it.
 constexpr double newton_margin = 0.3;
 
+/// Largest over mean ratio where bodies still fall or roll: there Newton is asked in vain.
+constexpr double settled_max = 100;
+
 bool at_rest_within(const Balance& balance, double ratio) {
   return balance.unsupported == 0 && balance.mean <= ratio;
+}
+
+bool settled_within(const Balance& balance, double ratio) {
+  return at_rest_within(balance, ratio) && balance.max <= settled_max * ratio;
 }
 
 /// Everything stands still at a moment of its own.
@@ -52,9 +61,9 @@ class Relaxation {
     result_.start = result_.end = assembly::balance_of(state_);
     double hand_over = options_.hand_over;
     while (!at_rest_within(result_.end, options_.tolerance) && !given_up()) {
-      if (!at_rest_within(result_.end, hand_over)) approach(hand_over);
+      if (!settled_within(result_.end, hand_over)) approach(hand_over);
       if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
-      if (!finish()) hand_over = std::min(hand_over, result_.end.mean) / 10;
+      if (!finish()) hand_over /= 10;
     }
     halt(state_);
     clock.restore(state_);
@@ -97,7 +106,7 @@ class Relaxation {
       result_.end = assembly::balance_of(cycle.state());
       if (result_.explicit_steps % steps_between_reports == 0) report("explicit");
       interrupted_ = options_.interrupted && options_.interrupted();
-    } while (!at_rest_within(result_.end, ratio) && !given_up());
+    } while (!settled_within(result_.end, ratio) && !given_up());
     state_ = cycle.release();
     halt(state_);
     note_method("explicit");
@@ -108,7 +117,7 @@ class Relaxation {
   /// equilibrium.
   bool finish() {
     for (int list = 0; list < most_lists; ++list) {
-      const double reach = options_.reach_of_skin * state_.list.skin;
+      const double reach = newton_reach * state_.list.skin;
       assembly::list_contacts(state_.model, state_.settings, reach);
       state_.list.position = state_.model.bodies.position;
       NewtonOptions wanted;

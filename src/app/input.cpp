@@ -17,6 +17,8 @@ Input read_input(const Options& options) {
   if (input.folder.empty()) input.folder = ".";
   input.state = input.continued ? io::read_state(file, options.overrides)
                                 : cycle::start(io::read_scene(file, options.overrides));
+  // An override may have changed what the step rests upon; without one it goes on to the bit.
+  if (input.continued && !options.overrides.empty()) input.state.next_dt = 0;
   return input;
 }
 

@@ -137,6 +137,9 @@ void add_notes(SceneDraft& draft) {
 void check_scene(const Section& root, const SceneDraft& draft) {
   check_densities(draft, root.diagnostics());
   check_rules(root, draft);
+}
+
+void check_placement(const Section& root, const SceneDraft& draft) {
   check_walls(draft, root.diagnostics());
   check_coincidence(draft, root.diagnostics());
 }

@@ -52,9 +52,11 @@ void read_outputs(const Section& root, SceneDraft& draft);
 /// absent.
 std::int32_t read_material(const Section& section, std::string_view key, const model::Scene& scene);
 
-/// What only the whole scene can tell: materials without density, pairs without a law, balls behind walls,
-/// balls at one place.
+/// What only the whole scene can tell: materials without density, pairs without a law.
 void check_scene(const Section& root, const SceneDraft& draft);
+
+/// Where balls may start: not behind walls, no two at one place. Later they may be wherever forces put them.
+void check_placement(const Section& root, const SceneDraft& draft);
 
 /// Adds to the scene's notes what is odd, though it is no mistake: walls that coincide.
 void add_notes(SceneDraft& draft);

@@ -1,32 +1,37 @@
 #include "eigengrain/io/scene_reader.hpp"
 
 #include "document.hpp"
+#include "document_text.hpp"
 #include "overrides.hpp"
 #include "scene_draft.hpp"
 #include "section.hpp"
+#include "settings_reader.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace eigengrain::io {
 namespace {
 
-void read_sections(const Section& root, SceneDraft& draft) {
-  root.check_keys();
+/// Puts the balls into a draft that has its materials, contacts and cell.
+using TakeBalls = std::function<void(const Section& root, SceneDraft& draft)>;
+
+void read_sections(const Section& root, SceneDraft& draft, const TakeBalls& take_balls) {
   read_gravity(root, draft);
   read_materials(root, draft);
   read_periodic(root, draft);
   read_contacts(root, draft);
-  read_balls(root, draft);
+  take_balls(root, draft);
   read_walls(root, draft);
   read_damping(root, draft);
   read_timestep(root, draft);
   read_run(root, draft);
   read_histories(root, draft);
   read_outputs(root, draft);
-  check_scene(root, draft);
 }
 
 Document read_document(std::string_view yaml, std::string_view name, std::span<const std::string> overrides,
@@ -46,6 +51,25 @@ Document read_document(std::string_view yaml, std::string_view name, std::span<c
   return document;
 }
 
+constexpr std::string_view balls_key = "balls";
+
+/// Of balls that exist, what the checks of the rest ask for: their materials.
+void take_materials_of_balls(const Section& root, SceneDraft& draft,
+                             std::span<const std::int32_t> material_of_ball) {
+  if (root.has(balls_key))
+    root.report(balls_key, "a state has its balls already; leave the key out, or start from the scene");
+  const auto count = static_cast<std::int32_t>(draft.scene.materials.size());
+  const bool known = std::all_of(material_of_ball.begin(), material_of_ball.end(),
+                                 [&](std::int32_t material) { return material >= 0 && material < count; });
+  if (known)
+    draft.scene.bodies.material.assign(material_of_ball.begin(), material_of_ball.end());
+  else
+    root.report("materials",
+                fmt::format("the balls of the state are made of more materials than these {}; keep their "
+                            "number and their order",
+                            count));
+}
+
 }  // namespace
 
 model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path& folder,
@@ -55,9 +79,35 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   SceneDraft draft;
   draft.scene.name = name;
   draft.folder = folder;
-  read_sections(Section(document.root, "", "", diagnostics), draft);
+  draft.scene.document = document_text(document.root, balls_key);
+  const Section root(document.root, "", "", diagnostics);
+  root.check_keys();
+  read_sections(root, draft, read_balls);
+  check_scene(root, draft);
+  check_placement(root, draft);
   diagnostics.throw_if_any();
   add_notes(draft);
+  return std::move(draft.scene);
+}
+
+model::Scene read_settings_text(std::string_view text, const std::filesystem::path& folder,
+                                std::string_view name, std::span<const std::string> overrides,
+                                std::span<const std::int32_t> material_of_ball) {
+  Diagnostics diagnostics;
+  const Document document = read_document(text, name, overrides, diagnostics);
+  SceneDraft draft;
+  draft.scene.name = name;
+  draft.folder = folder;
+  draft.scene.document = document_text(document.root, balls_key);
+  const Section root(document.root, "", "", diagnostics);
+  root.check_keys(balls_key);
+  read_sections(root, draft, [&](const Section& section, SceneDraft& into) {
+    take_materials_of_balls(section, into, material_of_ball);
+  });
+  check_scene(root, draft);
+  diagnostics.throw_if_any();
+  add_notes(draft);
+  draft.scene.bodies = {};
   return std::move(draft.scene);
 }
 

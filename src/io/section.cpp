@@ -66,7 +66,7 @@ Section Section::with_law(std::string_view law) const {
   return {*node_, path_, pattern_, *diagnostics_, law};
 }
 
-void Section::check_keys() const {
+void Section::check_keys(std::string_view optional) const {
   for (const Node& child : node_->children) {
     const bool known =
         std::any_of(keys_.begin(), keys_.end(), [&](const auto* key) { return key->name() == child.key; });
@@ -74,7 +74,7 @@ void Section::check_keys() const {
   }
   // Without its law it is open what a contact needs.
   for (const KeyDescription* key : keys_)
-    if (key->required && (key->law.empty() || !law_.empty()) && !has(key->name()))
+    if (key->required && key->name() != optional && (key->law.empty() || !law_.empty()) && !has(key->name()))
       report_missing(key->name());
 }
 

@@ -24,8 +24,9 @@ class Section {
   /// The same section of a contact whose law is known, so that only this law's parameters are keys.
   Section with_law(std::string_view law) const;
 
-  /// Reports the keys that the schema does not know, and the required ones that are missing.
-  void check_keys() const;
+  /// Reports the keys that the schema does not know, and the required ones that are missing; but `optional`
+  /// may be.
+  void check_keys(std::string_view optional = {}) const;
 
   bool has(std::string_view key) const { return node_->find(key) != nullptr; }
   std::optional<double> quantity(std::string_view key) const;

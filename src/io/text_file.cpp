@@ -12,7 +12,6 @@
 #include <vector>
 
 namespace eigengrain::io {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -27,8 +26,6 @@ std::string missing_file(const fs::path& file) {
   std::sort(names.begin(), names.end());  // a folder lists its files in any order
   return text + did_you_mean(file.filename().string(), names);
 }
-
-}  // namespace
 
 Parsed<std::string> read_text_file(const fs::path& file) {
   std::error_code error;

@@ -1,3 +1,4 @@
+#include "io/settings_reader.hpp"
 #include "unit/io_support.hpp"
 
 #include <gtest/gtest.h>
@@ -82,6 +83,29 @@ TEST(Fuzz, MutatedScenesAreReadOrRefusedButNeverCrash) {
     refused += mistakes_in(text, {}, folder.path()).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, 500);
+}
+
+/// What a scene said, without its balls, is a scene document again and says the same.
+TEST(Fuzz, TheDocumentOfAMutatedSceneIsReadAgain) {
+  const TemporaryFolder folder;
+  folder.write("packing.txt", "0.05 0.05 0.05 0.005\n0.1 0.05 0.05 0.005\n");
+  Random random(20240301);
+  int read = 0;
+  for (int round = 0; round < 1000; ++round) {
+    std::string text(valid);
+    mutate(text, random);
+    SCOPED_TRACE(text);
+    if (!mistakes_in(text, {}, folder.path()).empty()) continue;
+    ++read;
+    const model::Scene scene = read_scene_text(text, folder.path());
+    const model::Scene again =
+        read_settings_text(scene.document, folder.path(), "settings", {}, scene.bodies.material);
+    EXPECT_EQ(again.document, scene.document);
+    EXPECT_EQ(again.gravity, scene.gravity);
+    EXPECT_EQ(again.contacts.size(), scene.contacts.size());
+    EXPECT_EQ(again.notes, scene.notes);
+  }
+  EXPECT_GT(read, 100);
 }
 
 TEST(Fuzz, OddTexts) {

@@ -2,8 +2,10 @@
 // their closed forms.
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
+#include "eigengrain/base/error.hpp"
 #include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/io/scene_reader.hpp"
+#include "eigengrain/io/state_file.hpp"
 #ifdef WITH_SOLVERS
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/truth.hpp"
@@ -45,6 +47,16 @@ bool agree(const char* what, double value, double expected, double tolerance) {
   return std::abs(value / expected - 1) <= tolerance;
 }
 
+/// State files need HDF5: that they link is the point.
+bool refuses_a_state_that_is_not_there() {
+  try {
+    io::read_state("nowhere.h5");
+  } catch (const InputError&) {
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 int main() {
@@ -65,5 +77,6 @@ int main() {
              ".")
                  .bodies.size() == 1 &&
          good;
+  good = refuses_a_state_that_is_not_there() && good;
   return good ? 0 : 1;
 }

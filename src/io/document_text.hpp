@@ -1,0 +1,15 @@
+#pragma once
+
+#include "document.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace eigengrain::io {
+
+/// The document as JSON, which is YAML too, without the key `left_out` of its root: a line for each of the
+/// other keys. Every scalar is a quoted text, since nodes do not say what else it was; what reads YAML here
+/// takes numbers and flags from texts.
+std::string document_text(const Node& root, std::string_view left_out);
+
+}  // namespace eigengrain::io

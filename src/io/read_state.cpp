@@ -1,0 +1,175 @@
+#include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/io/state_file.hpp"
+
+#include "hdf5.hpp"
+#include "restore_contacts.hpp"
+#include "seal.hpp"
+#include "settings_reader.hpp"
+#include "state_layout.hpp"
+#include "text_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+namespace eigengrain::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view what_to_use = "use an earlier state, or start from the scene";
+
+[[noreturn]] void refuse(const fs::path& file, std::string message) {
+  throw InputError({{file.string(), 0, std::move(message)}});
+}
+
+/// Whatever says that it is a state, of a schema that this program knows.
+void check_format(const h5::File& hdf5, const fs::path& file) {
+  const bool ours = hdf5.has_attribute(layout::root, "format") &&
+                    hdf5.text(layout::root, "format") == layout::format &&
+                    hdf5.has_attribute(layout::root, "schema");
+  if (!ours) refuse(file, "an HDF5 file, but no state of Eigengrain; states are what a run writes");
+  const std::int64_t schema = hdf5.integer(layout::root, "schema");
+  if (schema == layout::schema) return;
+  refuse(file, fmt::format("{}: its schema is {}, and this program reads {}; read it with the program that "
+                           "wrote it",
+                           schema > layout::schema ? "written by a newer version" : "no schema that exists",
+                           schema, layout::schema));
+}
+
+void check_is_file(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw InputError(missing_file(file));
+  if (fs::is_directory(file, error)) refuse(file, "a folder, not a state file");
+}
+
+/// Opens the file only if every byte is as it was written, since HDF5 does not withstand all damage.
+h5::File open_whole(const fs::path& file) {
+  check_is_file(file);
+  const Seal seal = check_seal(file);
+  if (seal == Seal::broken)
+    refuse(file, fmt::format("damaged: its checksum is not that of its contents; {}", what_to_use));
+  if (!is_state_file(file))
+    refuse(file, "no state file: it does not begin as HDF5 does; states are what a run writes");
+  h5::File hdf5 = h5::File::open(file);
+  check_format(hdf5, file);
+  if (seal == Seal::missing)
+    refuse(file, fmt::format("cut short or damaged: the checksum at its end is missing; {}", what_to_use));
+  return hdf5;
+}
+
+bool finite(const Vec3& x) {
+  return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
+}
+
+void read_bodies(const h5::File& hdf5, assembly::State& state) {
+  const std::size_t count = hdf5.rows(layout::position);
+  layout::for_each_column(state, [&](const std::string& path, auto& column) {
+    column = hdf5.read<typename std::decay_t<decltype(column)>::value_type>(path, count);
+  });
+  model::Bodies& bodies = state.model.bodies;
+  if (hdf5.has(layout::spin)) bodies.spin = hdf5.read<Vec3>(layout::spin, count);
+  if (hdf5.has(layout::moment)) state.moment = hdf5.read<Vec3>(layout::moment, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!finite(bodies.position[i]))
+      throw h5::Error(fmt::format("the position of ball {} is not finite", bodies.identity[i]));
+    if (!(bodies.radius[i] > 0) || !std::isfinite(bodies.radius[i]))
+      throw h5::Error(
+          fmt::format("the radius of ball {} is {} m, not positive", bodies.identity[i], bodies.radius[i]));
+  }
+}
+
+void read_list(const h5::File& hdf5, assembly::State& state) {
+  state.list.skin = hdf5.number(layout::list, "skin");
+  state.list.rebuilds = hdf5.integer(layout::list, "rebuilds");
+  const std::size_t rows = hdf5.rows(layout::list_position);
+  state.list.position =
+      hdf5.read<Vec3>(layout::list_position, rows == 0 ? 0 : state.model.bodies.position.size());
+}
+
+/// Overrides may not pull away what the stored numbers rest upon.
+void refuse_changes(const model::Scene& stored, const model::Scene& now, const fs::path& file) {
+  if (now.materials.size() != stored.materials.size())
+    refuse(file, fmt::format("materials: {} entries; the state has {}, and its balls name them by number; "
+                             "keep their number and their order",
+                             now.materials.size(), stored.materials.size()));
+  for (std::size_t k = 0; k < now.materials.size(); ++k)
+    if (now.materials[k].density != stored.materials[k].density)
+      refuse(file, fmt::format("materials[{}].density: {} kg/m3; the balls of a state have their masses from "
+                               "{} kg/m3 and keep them; leave it out, or start from the scene",
+                               k, now.materials[k].density, stored.materials[k].density));
+  if (now.walls.size() != stored.walls.size())
+    refuse(file, fmt::format("walls: {} planes; the state has {}, and its contacts name them by number; keep "
+                             "their number and their order",
+                             now.walls.size(), stored.walls.size()));
+  if (now.cell.periodic != stored.cell.periodic)
+    refuse(file, "periodic: other axes than those of the state, whose contacts reach through them");
+}
+
+bool same_place(const model::Plane& first, const model::Plane& second) {
+  return first.point == second.point && first.normal == second.normal;
+}
+
+/// Whether contacts may be elsewhere than where the neighbour list looked for them.
+bool surroundings_moved(const model::Scene& stored, const model::Scene& now) {
+  return now.cell.origin != stored.cell.origin || now.cell.lengths != stored.cell.lengths ||
+         !std::equal(now.walls.begin(), now.walls.end(), stored.walls.begin(), stored.walls.end(),
+                     same_place);
+}
+
+model::Scene read_settings(const std::string& document, const fs::path& file,
+                           std::span<const std::string> overrides, const model::Bodies& bodies) {
+  return read_settings_text(document, file.parent_path(), file.string() + ", settings", overrides,
+                            bodies.material);
+}
+
+void list_anew(assembly::State& state) {
+  assembly::list_contacts(state.model, state.settings, state.list.skin);
+  ++state.list.rebuilds;
+  if (!state.list.position.empty()) state.list.position = state.model.bodies.position;
+}
+
+assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
+                              std::span<const std::string> overrides) {
+  assembly::State state;
+  layout::for_each_number(state, [&](const char* name, auto& value) {
+    if constexpr (std::is_integral_v<std::decay_t<decltype(value)>>)
+      value = hdf5.integer(layout::root, name);
+    else
+      value = hdf5.number(layout::root, name);
+  });
+  read_bodies(hdf5, state);
+  read_list(hdf5, state);
+  const std::string document = hdf5.read_text(layout::settings);
+  const model::Scene stored = read_settings(document, file, {}, state.model.bodies);
+  state.settings = read_settings(document, file, overrides, state.model.bodies);
+  state.settings.name = hdf5.text(layout::root, "scene");
+  refuse_changes(stored, state.settings, file);
+  state.model.walls = state.settings.walls;
+  state.model.cell = state.settings.cell;
+  state.model.gravity = state.settings.gravity;
+  state.model.local_damping = state.settings.local_damping;
+  state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());
+  if (surroundings_moved(stored, state.settings)) list_anew(state);
+  return state;
+}
+
+}  // namespace
+
+assembly::State read_state(const fs::path& file, std::span<const std::string> overrides) {
+  const h5::Silence silence;
+  try {
+    return read_contents(open_whole(file), file, overrides);
+  } catch (const h5::Error& error) {
+    refuse(file,
+           fmt::format("damaged, cut short or made by something else: {}; {}", error.what(), what_to_use));
+  } catch (const std::system_error& error) {
+    refuse(file, fmt::format("cannot be read: {}", error.code().message()));
+  }
+}
+
+}  // namespace eigengrain::io

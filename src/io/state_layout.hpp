@@ -1,0 +1,66 @@
+#pragma once
+
+#include "eigengrain/assembly/state.hpp"
+#include "eigengrain/contact/law.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+/// What stands where in a state file (docs/state-file.md), for the writer and the reader.
+namespace eigengrain::io::layout {
+
+inline constexpr std::string_view format = "eigengrain state";
+/// Grows with every change after which an old reader would misunderstand a file.
+inline constexpr std::int64_t schema = 1;
+
+inline const std::string root = "/";
+inline const std::string settings = "/settings";
+inline const std::string bodies = "/bodies";
+inline const std::string position = "/bodies/position";
+inline const std::string spin = "/bodies/spin";
+inline const std::string moment = "/bodies/moment";
+inline const std::string contacts = "/contacts";
+inline const std::string list = "/neighbour_list";
+inline const std::string list_position = "/neighbour_list/position";
+
+/// The columns with one row a body that every state has.
+template <class State, class Visit>
+void for_each_column(State& state, const Visit& visit) {
+  auto& balls = state.model.bodies;
+  visit("/bodies/identity", balls.identity);
+  visit(position, balls.position);
+  visit("/bodies/radius", balls.radius);
+  visit("/bodies/mass", balls.mass);
+  visit("/bodies/inertia", balls.inertia);
+  visit("/bodies/material", balls.material);
+  visit("/bodies/fixed", balls.fixed);
+  visit("/bodies/velocity", balls.velocity);
+  visit("/bodies/force", state.force);
+}
+
+/// The numbers of the root.
+template <class State, class Visit>
+void for_each_number(State& state, const Visit& visit) {
+  visit("time", state.time);
+  visit("step", state.step);
+  visit("dt", state.dt);
+  visit("next_dt", state.next_dt);
+}
+
+inline std::string group(std::int64_t k) {
+  return fmt::format("{}/{}", contacts, k);
+}
+
+/// "shear_force normal": the datasets that hold the states of a group.
+template <class Law>
+std::string state_fields() {
+  std::string names;
+  for (const contact::StateField& field : Law::state_fields)
+    names += fmt::format("{}{}", names.empty() ? "" : " ", field.name);
+  return names;
+}
+
+}  // namespace eigengrain::io::layout

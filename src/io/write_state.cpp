@@ -1,0 +1,144 @@
+#include "eigengrain/base/assert.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/parallel.hpp"
+#include "eigengrain/io/state_file.hpp"
+
+#include "atomic_file.hpp"
+#include "hdf5.hpp"
+#include "seal.hpp"
+#include "state_layout.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <ctime>
+#include <string>
+#include <type_traits>
+
+namespace eigengrain::io {
+namespace {
+
+#ifdef __clang__
+constexpr std::string_view compiler = __VERSION__;
+#else
+constexpr std::string_view compiler = "GCC " __VERSION__;
+#endif
+
+/// Bytes that the file will take at most: its numbers, and room for HDF5's own structures.
+std::size_t largest_size(const assembly::State& state) {
+  constexpr std::size_t body = sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + 8;
+  std::size_t size = (1U << 20U) + state.settings.document.size() + body * state.model.bodies.position.size();
+  state.model.contacts.for_each_group([&](const auto& group) {
+    size += (1U << 14U) + group.pairs.size() * (sizeof(contact::Pair) + sizeof(group.states[0]));
+  });
+  return size;
+}
+
+void write_provenance(h5::File& file) {
+  file.set(layout::root, "version", EIGENGRAIN_VERSION);
+  file.set(layout::root, "written", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))));
+  file.set(layout::root, "compiler", compiler);
+  file.set(layout::root, "threads", std::int64_t{threads()});
+}
+
+void write_bodies(const assembly::State& state, h5::File& file) {
+  file.add_group(layout::bodies);
+  layout::for_each_column(state, [&](const std::string& path, const auto& column) {
+    EIGENGRAIN_ASSERT(column.size() == state.model.bodies.position.size(), path, column.size());
+    file.write(path, column);
+  });
+  if (!state.model.bodies.spin.empty()) file.write(layout::spin, state.model.bodies.spin);
+  if (!state.moment.empty()) file.write(layout::moment, state.moment);
+}
+
+template <class Group>
+void write_pairs(const Group& group, const std::string& path, h5::File& file) {
+  std::vector<std::int32_t> first;
+  std::vector<std::int32_t> second;
+  std::vector<model::Image> image;
+  for (const contact::Pair& pair : group.pairs) {
+    first.push_back(pair.a);
+    second.push_back(pair.b);
+    image.push_back(pair.image);
+  }
+  file.write(path + "/a", first);
+  file.write(path + "/b", second);
+  file.write(path + "/image", image);
+}
+
+/// A state is plain doubles (contact/law.hpp): part after part is taken out of it.
+template <class Group>
+void write_states(const Group& group, const std::string& path, h5::File& file) {
+  using State = typename Group::State;
+  if constexpr (!std::is_empty_v<State>) {
+    std::size_t offset = 0;
+    std::vector<double> values;
+    for (const contact::StateField& field : Group::LawType::state_fields) {
+      const auto components = static_cast<std::size_t>(field.components);
+      values.resize(components * group.states.size());
+      for (std::size_t c = 0; c < group.states.size(); ++c) {
+        const auto bytes = std::as_bytes(std::span(&group.states[c], 1));
+        std::memcpy(&values[components * c], &bytes[offset], components * sizeof(double));
+      }
+      file.write_rows(fmt::format("{}/{}", path, field.name), h5::Number::f64, values.data(),
+                      group.states.size(), field.components);
+      offset += components * sizeof(double);
+    }
+  }
+}
+
+void write_contacts(const contact::Contacts& contacts, h5::File& file) {
+  file.add_group(layout::contacts);
+  file.set(layout::contacts, "groups", static_cast<std::int64_t>(contacts.groups.size()));
+  std::int64_t k = 0;
+  contacts.for_each_group([&](const auto& group) {
+    using Group = std::decay_t<decltype(group)>;
+    const std::string path = layout::group(k++);
+    file.add_group(path);
+    file.set(path, "kinematics", Group::KinematicsType::name);
+    file.set(path, "law", std::string_view(Group::LawType::name));
+    file.set(path, "rule", std::int64_t{group.rule});
+    file.set(path, "state_fields", layout::state_fields<typename Group::LawType>());
+    write_pairs(group, path, file);
+    write_states(group, path, file);
+  });
+}
+
+void write_contents(const assembly::State& state, h5::File& file) {
+  file.set(layout::root, "format", layout::format);
+  file.set(layout::root, "schema", layout::schema);
+  write_provenance(file);
+  file.set(layout::root, "scene", state.settings.name);
+  layout::for_each_number(state, [&](const char* name, auto value) { file.set(layout::root, name, value); });
+  file.write_text(layout::settings, state.settings.document);
+  write_bodies(state, file);
+  write_contacts(state.model.contacts, file);
+  file.add_group(layout::list);
+  file.set(layout::list, "skin", state.list.skin);
+  file.set(layout::list, "rebuilds", state.list.rebuilds);
+  file.write(layout::list_position, state.list.position);
+}
+
+}  // namespace
+
+void write_state(const assembly::State& state, const std::filesystem::path& file) {
+  if (state.settings.document.empty())
+    throw InputError(
+        {{file.string(), 0, "the state comes from no scene file, so there are no settings to write"}});
+  AtomicFile part(file);
+  const h5::Silence silence;
+  try {
+    h5::File hdf5 = h5::File::create_in_memory(largest_size(state));
+    write_contents(state, hdf5);
+    const std::span<const char> image = hdf5.image();
+    part.write({image.data(), image.size()});
+    const auto seal = seal_of(image);
+    part.write({seal.data(), seal.size()});
+  } catch (const h5::Error& error) {
+    throw SolverError(fmt::format("{}: the state cannot be written: {}", file.string(), error.what()));
+  }
+  part.commit();
+}
+
+}  // namespace eigengrain::io
