@@ -25,8 +25,8 @@ namespace {
 
 using cycle::Cycle;
 
-constexpr double overlap = 1e-9;     // of the radius: no stress to speak of
-constexpr double amplitude = 1e-10;  // way of the first step over the radius
+constexpr double overlap = 1e-13;   // of the radius; its forces must be small against those of the motion
+constexpr double amplitude = 1e-9;  // way of the first step over the radius
 
 /// Centre of a ball that just touches three others, on the side of `side`.
 std::optional<Vec3> seat(const std::array<Vec3, 3>& c, const std::array<double, 3>& reach, double side) {
@@ -121,18 +121,18 @@ void expect_limit(const SceneBuilder& builder, const char* what) {
   const Modes modes(system);
   const double below = growth(builder, modes, 0.999, 1500);
   const double above = growth(builder, modes, 1.001, 120);
-  const double barely_above = growth(builder, modes, 1.0001, 400);
+  const double barely_above = growth(builder, modes, 1.0001, 300);
   std::printf(
       "%s, alpha %.1f: %.3f at 0.999 (bound %.3f), %.4e at 1.001 (theory %.4e), %.4e at 1.0001 (%.4e)\n",
       what, SceneBuilder(builder).scene().local_damping, below, bound_below(0.999), above,
-      growth_above(1.001, 120), barely_above, growth_above(1.0001, 400));
+      growth_above(1.001, 120), barely_above, growth_above(1.0001, 300));
   // Rounding of positions, 1e-16 against ways of 1e-10, and overlaps of 1e-9 leave the theory some 1e-5,
   // grown as the mode itself grows.
   EXPECT_LT(below, bound_below(0.999) * 1.001) << what;
   EXPECT_GT(below, bound_below(0.999) * 0.98)
       << what;  // it does come that far: the step is not short of 0.999
   EXPECT_NEAR(above / growth_above(1.001, 120), 1, 0.01) << what;
-  EXPECT_NEAR(barely_above / growth_above(1.0001, 400), 1, 0.01) << what;
+  EXPECT_NEAR(barely_above / growth_above(1.0001, 300), 1, 0.01) << what;
 }
 
 TEST(Limit, OfRandomClustersIsWhereTheSpectrumSays) {
@@ -149,14 +149,14 @@ TEST(Limit, OfAFrictionlessClusterIsWhereTheSpectrumSays) {
     expect_limit(unstressed_cluster(7, 20, {.kn = 1, .ks = 0}, alpha), "20 balls without shear");
 }
 
-// At 1.001 the growth is e^0.0894 a step; after 300 steps a velocity of 1e-10 R a step would be 1e-10 · e^27.
+// At 1.001 the growth is e^0.0894 a step; after 300 steps a velocity of 1e-9 R a step would be 1e-9 · e^27.
 TEST(Limit, IsLeftByAThousandthWithE0089AStep) {
   EXPECT_NEAR(2 * std::acosh(1.001), 0.0894, 1e-4);
   const SceneBuilder builder = unstressed_cluster(100, 12, {.kn = 1, .ks = 0.6}, 0.7);
   const System system(builder);
   const Modes modes(system);
   // By then far out of the linear range, where only that it has grown without bound can be said.
-  EXPECT_FALSE(growth(builder, modes, 1.001, 300) < 1e8);
+  EXPECT_FALSE(growth(builder, modes, 1.001, 300) < 1e7);
 }
 
 /// Largest velocity or surface velocity of any ball over some steps, over that of the start.
@@ -199,14 +199,14 @@ TEST(Limit, OfThePeriodicFccLatticeIsItsClosedForm) {
       }
       const double below = lattice_growth(lattice, 0.999 * limit, 1000);
       const double above = lattice_growth(lattice, 1.001 * limit, 120);
-      const double barely_above = lattice_growth(lattice, 1.0001 * limit, 320);
+      const double barely_above = lattice_growth(lattice, 1.0001 * limit, 300);
       std::printf(
           "FCC, ks %.1f, alpha %.1f: %.3f at 0.999, %.4e at 1.001 (theory %.4e), %.4e at 1.0001 (%.4e)\n", ks,
-          alpha, below, above, growth_above(1.001, 120), barely_above, growth_above(1.0001, 320));
+          alpha, below, above, growth_above(1.001, 120), barely_above, growth_above(1.0001, 300));
       EXPECT_LT(below, bound_below(0.999) * 1.001);
       EXPECT_GT(below, bound_below(0.999) * 0.98);
       EXPECT_NEAR(above / growth_above(1.001, 120), 1, 0.01);
-      EXPECT_NEAR(barely_above / growth_above(1.0001, 320), 1, 0.01);
+      EXPECT_NEAR(barely_above / growth_above(1.0001, 300), 1, 0.01);
     }
 }
 
