@@ -108,7 +108,7 @@ double Cycle::move(double duration, double dt) {
 }
 
 void Cycle::list_anew() {
-  assembly::list_contacts(state_.model, state_.settings, state_.list.skin);
+  assembly::list_contacts(state_.model, state_.settings, state_.list.skin, false);
   state_.list.position = state_.model.bodies.position;
   ++state_.list.rebuilds;
   forces_ = assembly::ContactForceSum(state_.model, state_.turns());

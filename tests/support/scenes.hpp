@@ -19,7 +19,10 @@ namespace eigengrain::test {
 struct Springs {
   double kn = 1;
   double ks = 0;
-  bool tension = true;  ///< linear springs; without it, friction is set so that ks counts
+  bool tension = true;    ///< linear springs; without it, friction is set so that ks counts
+  double friction = 0.5;  ///< where ks counts
+  bool small_angle = false;
+  bool end_step = false;
 };
 
 class SceneBuilder {
@@ -28,8 +31,9 @@ class SceneBuilder {
     scene_.name = "test";
     scene_.materials.push_back({"grain", 1.0});
     scene_.contacts.push_back({.law = "linear",
-                               .parameters = {springs.kn, springs.ks, springs.ks > 0 ? 0.5 : 0.0,
-                                              springs.tension ? 1.0 : 0.0, 0.0, 0.0}});
+                               .parameters = {springs.kn, springs.ks, springs.ks > 0 ? springs.friction : 0.0,
+                                              springs.tension ? 1.0 : 0.0, springs.small_angle ? 1.0 : 0.0,
+                                              springs.end_step ? 1.0 : 0.0}});
     scene_.local_damping = 0;
   }
 
@@ -43,6 +47,26 @@ class SceneBuilder {
     b.inertia.push_back(model::sphere_inertia(radius, mass));
     b.material.push_back(0);
     b.fixed.push_back(fixed);
+    if (!b.velocity.empty()) b.velocity.emplace_back(Vec3::Zero());
+    if (!b.spin.empty()) b.spin.emplace_back(Vec3::Zero());
+    return *this;
+  }
+  /// Velocity and spin of the ball added last.
+  SceneBuilder& moving(const Vec3& velocity, const Vec3& spin = Vec3::Zero()) {
+    model::Bodies& b = scene_.bodies;
+    b.velocity.resize(b.position.size(), Vec3::Zero());
+    b.velocity.back() = velocity;
+    if (b.spin.empty() && spin.isZero(0)) return *this;
+    b.spin.resize(b.position.size(), Vec3::Zero());
+    b.spin.back() = spin;
+    return *this;
+  }
+  SceneBuilder& gravity(const Vec3& g) {
+    scene_.gravity = g;
+    return *this;
+  }
+  SceneBuilder& damped(double local_damping) {
+    scene_.local_damping = local_damping;
     return *this;
   }
   SceneBuilder& plane(const Vec3& point, const Vec3& normal) {

@@ -18,6 +18,9 @@ contact::AnyGroup new_group(std::string_view kinematics, const model::ContactRul
 ///
 /// In each group contacts are sorted by a, then b, then image. Throws InputError where two centres coincide
 /// or no rule of the scene exists for a pair.
-void list_contacts(Model& model, const model::Scene& scene, double reach);
+///
+/// form  whether new pairs that touch count as formed. The cycle leaves that to its forces: a contact then
+///       forms in the same way whether it was listed before it touched or not
+void list_contacts(Model& model, const model::Scene& scene, double reach, bool form = true);
 
 }  // namespace eigengrain::assembly

@@ -3,6 +3,7 @@
 #include "eigengrain/base/type_list.hpp"
 #include "eigengrain/contact/geometry.hpp"
 #include "eigengrain/contact/law.hpp"
+#include "eigengrain/contact/shear_transport.hpp"
 #include "eigengrain/model/bodies.hpp"
 #include "eigengrain/model/surroundings.hpp"
 
@@ -88,17 +89,23 @@ inline ContactMotion contact_motion(const ContactGeometry& geometry, const SideM
 }
 
 /// The same with n and the levers of the middle of the step, in which a rigid motion makes no spurious
-/// increment: of size θ³ for a rotation by θ instead of θ² (docs/theory.md). The normal part of δ is turned
-/// onto the present n, so that laws may take δ apart along it.
+/// increment: of size θ³ for a rotation by θ instead of θ² (docs/theory.md). What was found there is carried
+/// on to the end of the step, with the contact plane and, for δ, by the second half of the spin about n: left
+/// where it was, it would err by Δt² a step, and the cycle would be of first order. Laws may take all parts
+/// along the present n.
 template <class Kinematics>
 ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, const ContactGeometry& geometry,
                               const SideMotion& a, const SideMotion& b) {
   const ContactGeometry middle =
       Kinematics::geometry_before(placement, pair, 0.5 * a.translation, 0.5 * b.translation);
+  const Vec3& n = geometry.normal;
   ContactMotion motion = contact_motion(middle, a, b);
-  motion.displacement += motion.displacement.dot(middle.normal) * (geometry.normal - middle.normal);
-  motion.normal = geometry.normal;
+  motion.normal = n;
   motion.overlap = geometry.overlap;
+  motion.displacement = rotate_onto(motion.displacement, middle.normal, n);
+  motion.rotation = rotate_onto(motion.rotation, middle.normal, n);
+  motion.mean_rotation = rotate_onto(motion.mean_rotation, middle.normal, n);
+  motion.displacement += 0.5 * motion.mean_rotation.dot(n) * n.cross(motion.displacement);
   return motion;
 }
 
