@@ -21,4 +21,13 @@ struct Input {
 /// current folder.
 Input read_input(const Options& options);
 
+/// The model that a verb asks a question about, as it stands, and what was said beside its bodies.
+struct Question {
+  model::Scene settings;
+  assembly::Model model;
+};
+
+/// Reads a scene, without starting it, or a state.
+Question read_question(const Options& options);
+
 }  // namespace eigengrain::app

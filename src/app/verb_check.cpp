@@ -1,7 +1,7 @@
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
-#include "eigengrain/io/scene_reader.hpp"
 
+#include "input.hpp"
 #include "text.hpp"
 #include "verbs.hpp"
 
@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace eigengrain::app {
 namespace {
@@ -67,8 +68,8 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
 }
 
 /// What one step of the explicit cycle has to do in this scene, in its order.
-std::vector<std::string> passes(const model::Scene& scene, const assembly::Unknowns& unknowns,
-                                const std::vector<GroupSummary>& groups) {
+std::vector<std::string> passes(const model::Scene& scene, const assembly::Model& model,
+                                const assembly::Unknowns& unknowns, const std::vector<GroupSummary>& groups) {
   std::vector<std::string> parts;
   const auto acts = [](const model::ContactRule& rule) { return rule.law != "none"; };
   if (std::any_of(scene.contacts.begin(), scene.contacts.end(), acts)) parts.emplace_back("search");
@@ -76,7 +77,7 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Unkno
   if (!scene.gravity.isZero(0)) parts.emplace_back("gravity");
   if (scene.local_damping > 0) parts.emplace_back("local damping");
   const auto moves = [](model::FixedComponents fixed) { return fixed.translation() != 7; };
-  if (std::any_of(scene.bodies.fixed.begin(), scene.bodies.fixed.end(), moves))
+  if (std::any_of(model.bodies.fixed.begin(), model.bodies.fixed.end(), moves))
     parts.emplace_back("translation");
   if (unknowns.rotations() > 0) parts.emplace_back("rotation");
   return parts;
@@ -101,19 +102,20 @@ void print_settings(const model::Scene& scene) {
   else
     fmt::print("  timestep    {}, safety {:g}\n", policy_name(scene.timestep.policy), scene.timestep.safety);
   if (scene.run.steps) fmt::print("  run         {}\n", counted(*scene.run.steps, "step", "steps"));
+  if (scene.run.time) fmt::print("  run         until t = {:g} s\n", *scene.run.time);
   if (scene.run.unbalanced)
     fmt::print("  run         until the unbalanced ratio is {:g}\n", *scene.run.unbalanced);
 }
 
 /// All that the verb reports.
 struct Report {
-  explicit Report(const model::Scene& asked)
+  Report(const model::Scene& asked, assembly::Model built)
       : scene(asked),
-        model(assembly::build_model(asked)),
+        model(std::move(built)),
         system(model),
         unknowns(system.unknowns),
         groups(summarise(model.contacts)),
-        steps(passes(asked, unknowns, groups)),
+        steps(passes(asked, model, unknowns, groups)),
         absent(left_out(asked, model, unknowns, groups)),
         free(static_cast<std::int64_t>(unknowns.free_components().size())),
         set_aside(static_cast<std::int64_t>(unknowns.set_aside().size())) {}
@@ -181,8 +183,8 @@ void print(const Report& report) {
 }  // namespace
 
 void check(const Options& options) {
-  const model::Scene scene = io::read_scene(options.scene, options.overrides);
-  const Report report(scene);
+  const Question question = read_question(options);
+  const Report report(question.settings, question.model);
   write_json(options.json, to_json(report));
   print(report);
 }

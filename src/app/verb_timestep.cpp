@@ -1,9 +1,9 @@
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/cycle/bounds.hpp"
-#include "eigengrain/io/scene_reader.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
 
+#include "input.hpp"
 #include "text.hpp"
 #include "verbs.hpp"
 
@@ -115,8 +115,7 @@ void print(const model::Scene& scene, const Comparison& c, const PolicyStep& pol
 
 void timestep(const Options& options) {
   if (!options.petsc.empty()) petsc::set_options(options.petsc);
-  const model::Scene scene = io::read_scene(options.scene, options.overrides);
-  const assembly::Model model = assembly::build_model(scene);
+  const auto [scene, model] = read_question(options);
   petsc::start();  // before the clocks of the comparison
   const Comparison comparison = timestep::compare(model);
   if (!options.petsc.empty()) petsc::require_options_used();
