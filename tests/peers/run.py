@@ -164,7 +164,7 @@ class Comparison:
     def turns(self, scene, cores, repeat):
         """{code: results, one a round} of the codes that never failed."""
         results = {name: [] for name in self.codes}
-        if cores > 1 and not shutil.which("mpirun"):
+        if cores > 1 and shutil.which("lmp") and not shutil.which("mpirun"):
             say("skipped: LAMMPS on several cores, no program `mpirun`")
             results = {name: [] for name in results if not name.startswith("LAMMPS")}
         for _ in range(repeat):
@@ -185,10 +185,12 @@ class Comparison:
 
     def agree(self, scene, results):
         """Notes an error where the floors differ from the first code's by more than the tolerance."""
+        if scene.size not in TOLERANCE:  # ten balls that bounce: not a matter of forces
+            return
         floors = {name: median(r.floor for r in rows) for name, rows in results.items() if rows}
         reference = next(iter(floors.values()), 0)
         for name, floor in floors.items():
-            if not abs(floor - reference) <= TOLERANCE.get(scene.size, 1) * reference:
+            if not abs(floor - reference) <= TOLERANCE[scene.size] * reference:
                 self.errors.append(f"{scene.size}: floor over weight {floor:.5f} in {name}, {reference:.5f} in "
                                    f"{next(iter(floors))}")
                 say(self.errors[-1])
