@@ -25,7 +25,7 @@ HERE = Path(__file__).resolve().parent
 TREE = HERE.parents[1]
 
 # A few seconds each, some ten for YADE.
-STEPS = {"tiny": 30_000, "1k": 5000, "10k": 1000, "100k": 150, "1M": 20}
+STEPS = {"tiny": 10_000, "1k": 5000, "10k": 1000, "100k": 150, "1M": 20}
 DROP_STEPS = (240, 250, 280, 300, 310)  # when to look at the bed that falls; see README.md
 YADE_VERLET = "5e-4"  # m; see README.md
 # Of the floor force over weight; where they come from: README.md.
@@ -252,7 +252,8 @@ def measure(comparison, sizes, cores_list, repeat):
         "| floor force / weight |",
         "| ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |",
     ]
-    tail = ["", f"1,000 balls that fall by 0.2 mm, floor force / weight after {', '.join(map(str, DROP_STEPS))} steps: "
+    tail = ["", "1,000 balls that fall by 0.2 mm, floor force / weight after "
+            f"{', '.join(map(str, DROP_STEPS))} steps: "
             + "; ".join(f"{name} {', '.join(f'{f:.4f}' for f in floors)}" for name, floors in dropped.items()) + "."]
     return "\n".join(head + lines + tail + [f"\n**{error}**" for error in comparison.errors]) + "\n"
 
