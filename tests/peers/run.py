@@ -192,8 +192,8 @@ class Comparison:
         reference = next(iter(floors.values()), 0)
         for name, floor in floors.items():
             if not abs(floor - reference) <= TOLERANCE[scene.size] * reference:
-                self.errors.append(f"{scene.size}, {scene.steps} steps: floor over weight {floor:.5f} in {name}, {reference:.5f} in "
-                                   f"{next(iter(floors))}")
+                self.errors.append(f"{scene.size}, {scene.steps} steps: floor over weight {floor:.5f} in {name}, "
+                                   f"{reference:.5f} in {next(iter(floors))}")
                 say(self.errors[-1])
 
     def check(self, cores=1):
