@@ -77,6 +77,8 @@ int run_program(int argc, char** argv) {
   add_petsc(*relaxing, options, "-relax_ksp_type gmres");
   relaxing->add_option("--tolerance", options.tolerance, "mean unbalanced ratio to reach; default 1e-10")
       ->check(CLI::PositiveNumber);
+  relaxing->add_option("--max-steps", options.max_steps, "explicit steps to spend; default 1000000")
+      ->check(CLI::PositiveNumber);
   add_petsc(*add_verb(program, "timestep", "estimated and true critical timestep", options, timestep),
             options, "-eps_ncv 80");
 #endif

@@ -47,6 +47,7 @@ void relax(const Options& options) {
   note_interrupts();
   relaxation::RelaxOptions wanted;
   wanted.tolerance = options.tolerance;
+  wanted.max_steps = options.max_steps;
   wanted.report = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
   wanted.interrupted = [] { return interrupted() != 0; };
   const RelaxResult result = relaxation::relax(input.state, wanted);

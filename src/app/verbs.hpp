@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Options {
   std::string petsc;                   ///< options for PETSc
   std::string output;                  ///< folder of results; empty: see read_input
   double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
+  std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.
