@@ -119,14 +119,16 @@ Watch::Watch(const State& state) : closed_(closed(state)) {
   gravitational_ = energies.gravitational;
 }
 
-std::optional<Trouble> Watch::look(const State& state) const {
+std::optional<Trouble> Watch::look(const State& state) {
   if (auto trouble = not_finite(state)) return trouble;
   if (auto trouble = too_deep(state)) return trouble;
   if (auto trouble = too_fast(state)) return trouble;
   if (!closed_) return std::nullopt;
   const assembly::Energies energies = assembly::energies_of(state);
   const double found = energies.kinetic + energies.elastic;
-  const double explained = available_ + std::max(0.0, gravitational_ - energies.gravitational);
+  // A ball may bounce a little higher than it began: it then has energy, and nothing is released any more.
+  released_ = std::max(released_, gravitational_ - energies.gravitational);
+  const double explained = available_ + released_;
   if (!(found <= largest_growth * explained)) return energy_trouble(state, found, explained);
   return std::nullopt;
 }

@@ -4,9 +4,23 @@
 #include "eigengrain/io/scene_reader.hpp"
 #include "eigengrain/io/state_file.hpp"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 namespace eigengrain::app {
+namespace {
+
+/// Whether an override may change what the step rests upon, so that it has to be chosen anew. Without one, a
+/// run goes on with the step that it had, to the bit.
+bool touches_the_step(const std::string& override_text) {
+  constexpr std::array<std::string_view, 3> harmless{"run", "outputs", "histories"};
+  return std::none_of(harmless.begin(), harmless.end(),
+                      [&](std::string_view key) { return override_text.starts_with(key); });
+}
+
+}  // namespace
 
 Input read_input(const Options& options) {
   const std::filesystem::path file = options.scene;
@@ -19,8 +33,9 @@ Input read_input(const Options& options) {
   if (input.folder.empty()) input.folder = ".";
   input.state = input.continued ? io::read_state(file, options.overrides)
                                 : cycle::start(io::read_scene(file, options.overrides));
-  // An override may have changed what the step rests upon; without one it goes on to the bit.
-  if (input.continued && !options.overrides.empty()) input.state.next_dt = 0;
+  const auto& overrides = options.overrides;
+  if (input.continued && std::any_of(overrides.begin(), overrides.end(), touches_the_step))
+    input.state.next_dt = 0;
   return input;
 }
 

@@ -24,7 +24,8 @@ std::string problem_of_name(const std::string& name) {
 
 void check_balls(const Section& section, const std::vector<std::int64_t>& balls, const SceneDraft& draft) {
   std::set<std::int64_t> seen;
-  const std::int64_t count = draft.scene.bodies.size();
+  // Of a state, the reader knows the materials of its balls only.
+  const auto count = std::ssize(draft.scene.bodies.material);
   for (const std::int64_t ball : balls) {
     if (!seen.insert(ball).second)
       section.report("balls", fmt::format("ball {} stands there twice; name it once", ball));
@@ -90,7 +91,7 @@ void read_outputs(const Section& root, SceneDraft& draft) {
   const auto section = root.section("outputs");
   if (!section) return;
   section->check_keys();
-  draft.scene.outputs.checkpoint_every = section->integer("checkpoint").value_or(0);
+  draft.scene.outputs.checkpoint_every = section->integer("checkpoint").value_or(draft.scene.outputs.checkpoint_every);
   draft.scene.outputs.series_every = section->integer("series").value_or(0);
 }
 

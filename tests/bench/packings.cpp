@@ -53,12 +53,16 @@ model::Scene jittered_lattice(std::int64_t bodies) {
   return scene;
 }
 
+}  // namespace
+
 model::Scene scene_of(std::int64_t bodies) {
   const std::string settled = EIGENGRAIN_EXAMPLES "/scenes/packing_";
   if (bodies == 10'000) return io::read_scene(settled + "10k.yaml");
   if (bodies == 100'000) return io::read_scene(settled + "100k.yaml");
   return jittered_lattice(bodies);
 }
+
+namespace {
 
 constexpr std::array<std::int64_t, 4> all_sizes{1'000, 10'000, 100'000, 1'000'000};
 

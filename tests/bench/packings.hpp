@@ -31,6 +31,9 @@ struct Packing : WithModel, assembly::LinearSystem {
 /// touch, as in a settled packing.
 const Packing& packing(std::int64_t bodies);
 
+/// The scene of that packing.
+model::Scene scene_of(std::int64_t bodies);
+
 /// Balls thrown at random into a periodic cube, with a solid fraction of 0.6 and radii from 1 to `ratio`
 /// that are distributed as the power -3.5 of the radius. They overlap more than grains do; that is of no
 /// matter to a search.

@@ -119,15 +119,13 @@ TYPED_TEST(LawContract, DoesNotKnowTheFrame) {
     const Vec3 n_next = (n + 0.01 * test::random_vector(random)).normalized();
     const Vec3 shift = 0.05 * n.cross(test::random_vector(random));
     const Vec3 delta = 0.02 * test::random_vector(random);
-    const Vec3 spin = 0.01 * test::random_vector(random);
+    const double spin = 0.01 * test::random_vector(random).x();
     const auto force = [&](const Mat3& frame) {
       typename TypeParam::State sheared_state = law.formed(frame * n);
       law.evaluate(moved(frame * n, 0.2, frame * shift), law.formed(frame * n), sheared_state);
       typename TypeParam::State next;
-      const ContactMotion motion{.normal = frame * n_next,
-                                 .overlap = 0.2,
-                                 .displacement = frame * delta,
-                                 .mean_rotation = frame * spin};
+      const ContactMotion motion{
+          .normal = frame * n_next, .overlap = 0.2, .displacement = frame * delta, .spin = spin};
       return law.evaluate(motion, sheared_state, next).force;
     };
     EXPECT_LT((q * force(Mat3::Identity()) - force(q)).norm(), 1e-14);

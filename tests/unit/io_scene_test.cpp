@@ -116,7 +116,7 @@ TEST(ReadScene, DefaultsAreThoseOfTheModel) {
   EXPECT_TRUE(scene.bodies.velocity.empty());
   EXPECT_TRUE(scene.bodies.spin.empty());
   EXPECT_TRUE(scene.histories.empty());
-  EXPECT_EQ(scene.outputs.checkpoint_every, 0);
+  EXPECT_EQ(scene.outputs.checkpoint_every, 10000);
   EXPECT_EQ(scene.outputs.series_every, 0);
   // An empty section is the same as none.
   const model::Scene empty = read_scene_text(std::string(one_ball) + "timestep: {}\ndamping: {}\n", ".");

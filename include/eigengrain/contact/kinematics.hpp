@@ -85,7 +85,7 @@ inline ContactMotion contact_motion(const ContactGeometry& geometry, const SideM
           .displacement = (b.translation + b.rotation.cross(geometry.lever_b)) -
                           (a.translation + a.rotation.cross(geometry.lever_a)),
           .rotation = b.rotation - a.rotation,
-          .mean_rotation = 0.5 * (a.rotation + b.rotation)};
+          .spin = 0.5 * (a.rotation + b.rotation).dot(geometry.normal)};
 }
 
 /// The same with n and the levers of the middle of the step, in which a rigid motion makes no spurious
@@ -104,8 +104,7 @@ ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, cons
   motion.overlap = geometry.overlap;
   motion.displacement = rotate_onto(motion.displacement, middle.normal, n);
   motion.rotation = rotate_onto(motion.rotation, middle.normal, n);
-  motion.mean_rotation = rotate_onto(motion.mean_rotation, middle.normal, n);
-  motion.displacement += 0.5 * motion.mean_rotation.dot(n) * n.cross(motion.displacement);
+  motion.displacement += 0.5 * motion.spin * n.cross(motion.displacement);
   return motion;
 }
 

@@ -26,7 +26,7 @@ struct ContactMotion {
   Vec3 displacement =
       Vec3::Zero();              ///< increment of the relative displacement δ since the committed state, m
   Vec3 rotation = Vec3::Zero();  ///< increment of the relative rotation φ, rad
-  Vec3 mean_rotation = Vec3::Zero();  ///< increment of the mean rotation ½(θ_1 + θ_2), rad
+  double spin = 0;               ///< increment of the mean rotation ½(θ_1 + θ_2) about n, rad
 };
 
 /// What acts at the contact point, of the first side on the second.
