@@ -50,6 +50,7 @@ def draw_bouncing_ball():
     figure, (height, energy) = plt.subplots(2, 1, sharex=True, figsize=(7, 5), layout="constrained")
     height.plot(t, [1e3 * z for z in column(table, "ball 0 z")])
     height.axhline(5, color="grey", linewidth=0.8, label="radius: where it touches the floor")
+    height.set_ylim(top=31)
     height.set_ylabel("height of the centre [mm]")
     height.set_title("A ball dropped onto a floor, undamped")
     height.legend(loc="upper right", fontsize="small")

@@ -80,6 +80,7 @@ State start(const model::Scene& scene) {
 
 Cycle::Cycle(State state, TimestepPolicy policy)
     : state_(std::move(state)), policy_(std::move(policy)), forces_(state_.model, state_.turns()) {
+  if (std::ssize(state_.list.position) != state_.model.bodies.size()) list_anew();
   if (state_.next_dt == 0) choose_timestep();
 }
 
@@ -108,9 +109,7 @@ double Cycle::move(double duration, double dt) {
 }
 
 void Cycle::list_anew() {
-  assembly::list_contacts(state_.model, state_.settings, state_.list.skin, false);
-  state_.list.position = state_.model.bodies.position;
-  ++state_.list.rebuilds;
+  assembly::renew_list(state_, state_.list.skin);
   forces_ = assembly::ContactForceSum(state_.model, state_.turns());
 }
 

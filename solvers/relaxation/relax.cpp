@@ -20,6 +20,7 @@ using assembly::Balance;
 using assembly::State;
 
 constexpr double explicit_damping = 0.7;
+constexpr double first_hand_over = 1e-5;  // ratio at which Newton is tried first
 constexpr double explicit_safety = 0.95;  // of a proven bound
 constexpr std::int64_t steps_between_looks = 100;
 constexpr std::int64_t steps_between_reports = 1000;
@@ -59,7 +60,7 @@ class Relaxation {
     const double damping = std::exchange(state_.model.local_damping, explicit_damping);
     halt(state_);
     result_.start = result_.end = assembly::balance_of(state_);
-    double hand_over = options_.hand_over;
+    double hand_over = first_hand_over;
     while (!at_rest_within(result_.end, options_.tolerance) && !given_up()) {
       if (!settled_within(result_.end, hand_over)) approach(hand_over);
       if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
@@ -118,8 +119,7 @@ class Relaxation {
   bool finish() {
     for (int list = 0; list < most_lists; ++list) {
       const double reach = newton_reach * state_.list.skin;
-      assembly::list_contacts(state_.model, state_.settings, reach);
-      state_.list.position = state_.model.bodies.position;
+      assembly::renew_list(state_, reach);
       NewtonOptions wanted;
       wanted.target = std::max(newton_margin * options_.tolerance, 1.5 * result_.end.floor);
       wanted.reach = reach;

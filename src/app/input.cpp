@@ -1,12 +1,16 @@
 #include "input.hpp"
 
+#include "eigengrain/base/error.hpp"
 #include "eigengrain/cycle/cycle.hpp"
 #include "eigengrain/io/scene_reader.hpp"
 #include "eigengrain/io/state_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace eigengrain::app {
@@ -20,6 +24,14 @@ bool touches_the_step(const std::string& override_text) {
                       [&](std::string_view key) { return override_text.starts_with(key); });
 }
 
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    throw InputError(fmt::format("--output {}: the folder cannot be made ({}); name one that can be written",
+                                 folder.string(), problem.message()));
+}
+
 }  // namespace
 
 Input read_input(const Options& options) {
@@ -31,6 +43,7 @@ Input read_input(const Options& options) {
                  : input.continued       ? file.parent_path()
                                          : std::filesystem::path();
   if (input.folder.empty()) input.folder = ".";
+  if (!options.output.empty()) make_folder(input.folder);
   input.state = input.continued ? io::read_state(file, options.overrides)
                                 : cycle::start(io::read_scene(file, options.overrides));
   const auto& overrides = options.overrides;

@@ -3,27 +3,15 @@
 #include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/energies.hpp"
 #include "eigengrain/assembly/forces.hpp"
-#include "eigengrain/base/error.hpp"
 #include "eigengrain/io/state_file.hpp"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
-#include <system_error>
 
 namespace eigengrain::app {
 namespace {
 
 using assembly::State;
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem)
-    throw InputError(fmt::format("--output {}: the folder cannot be made ({}); name one that can be written",
-                                 folder.string(), problem.message()));
-}
 
 /// The first multiple of `every` after the step.
 std::int64_t next_multiple(std::int64_t step, std::int64_t every) {
@@ -48,7 +36,6 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
 
 RunOutputs::RunOutputs(const Input& input)
     : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
-  make_folder(input.folder);
   const std::int64_t step = input.state.step;
   if (choice_.series_every > 0) {
     series_.emplace(input.folder, input.stem);

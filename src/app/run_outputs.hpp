@@ -15,7 +15,7 @@ namespace eigengrain::app {
 /// All that a run writes: its state (FOLDER/STEM.h5), frames for ParaView, and histories.
 class RunOutputs {
  public:
-  /// Makes the folder; takes over what an earlier part of the run has written.
+  /// Takes over what an earlier part of the run has written.
   explicit RunOutputs(const Input& input);
 
   /// The first step after this one at which something is due.

@@ -11,8 +11,7 @@ struct StepVerdict {
   double dt = 0;
   double limit = 0;  ///< of the damped cycle, s: the true one where `exact`, else a proven bound below it
   bool exact = false;
-  bool safe = false;    ///< dt does not exceed the limit
-  bool proven = false;  ///< and a theorem says so
+  bool safe = false;  ///< dt does not exceed the limit
 };
 
 /// Judges the step that the cycle will take next: by the proven bound, which is cheap and asks nothing of

@@ -51,9 +51,6 @@ void relax(const Options& options) {
   wanted.report = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
   wanted.interrupted = [] { return interrupted() != 0; };
   const RelaxResult result = relaxation::relax(input.state, wanted);
-  if (!options.petsc.empty()) petsc::require_options_used();
-
-  std::filesystem::create_directories(input.folder);
   const std::filesystem::path file = input.folder / (input.stem + "-relaxed.h5");
   io::write_state(input.state, file);
   auto report = to_json(result, input.state);
@@ -65,6 +62,8 @@ void relax(const Options& options) {
              counted(result.newton_iterations, "iteration", "iterations"), balance_text(result.end),
              file.string());
   if (interrupted() != 0) throw Interrupted{interrupted()};
+  // After all is saved, and only where Newton had a chance to ask for them.
+  if (!options.petsc.empty() && result.attempts > 0) petsc::require_options_used();
   if (!result.converged)
     throw SolverError(fmt::format("no equilibrium within {:g} was found; the nearest state is in {}",
                                   options.tolerance, file.string()));

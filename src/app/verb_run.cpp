@@ -1,5 +1,4 @@
 #include "eigengrain/assembly/balance.hpp"
-#include "eigengrain/assembly/energies.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/cycle.hpp"

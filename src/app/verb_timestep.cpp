@@ -1,5 +1,4 @@
-#include "eigengrain/assembly/model.hpp"
-#include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
 
@@ -11,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace eigengrain::app {
 namespace {
@@ -19,28 +20,20 @@ using nlohmann::ordered_json;
 using timestep::Comparison;
 using timestep::Estimate;
 
-/// The step that the scene's own policy would take, against the limit of its damped cycle.
+/// The step that a run would take next.
 struct PolicyStep {
   std::string how;
   double dt = 0;
 };
 
-PolicyStep policy_step(const model::TimestepChoice& choice, double damping, const Comparison& comparison) {
-  const auto of = [&](const char* name) {
-    for (const Estimate& estimate : comparison.estimates)
-      if (estimate.name == name) return choice.safety * estimate.dt;
-    return 0.0;
-  };
-  switch (choice.policy) {
-    case model::TimestepPolicy::fixed:
-      return {"fixed", choice.dt.value_or(0.0)};
-    case model::TimestepPolicy::bound:
-      return {fmt::format("bound: {:g} of scaled-block-bound with the damping", choice.safety),
-              cycle::damped_timestep(of("scaled-block-bound"), damping)};
-    case model::TimestepPolicy::estimate:
-      break;
-  }
-  return {fmt::format("estimate: {:g} of diagonal", choice.safety), of("diagonal")};
+PolicyStep policy_step(const assembly::State& state) {
+  const model::TimestepChoice& choice = state.settings.timestep;
+  std::string how = "fixed";
+  if (choice.policy == model::TimestepPolicy::bound)
+    how = fmt::format("bound: {:g} of what is proven for all near pairs", choice.safety);
+  else if (choice.policy == model::TimestepPolicy::estimate)
+    how = fmt::format("estimate: {:g} of diagonal", choice.safety);
+  return {std::move(how), cycle::policy_of(state.settings).dt(state)};
 }
 
 /// JSON has no infinity: a step without limit is null.
@@ -115,13 +108,13 @@ void print(const model::Scene& scene, const Comparison& c, const PolicyStep& pol
 
 void timestep(const Options& options) {
   if (!options.petsc.empty()) petsc::set_options(options.petsc);
-  const auto [scene, model] = read_question(options);
+  const assembly::State state = read_input(options).state;
   petsc::start();  // before the clocks of the comparison
-  const Comparison comparison = timestep::compare(model);
+  const Comparison comparison = timestep::compare(state.model);
   if (!options.petsc.empty()) petsc::require_options_used();
-  const PolicyStep policy = policy_step(scene.timestep, model.local_damping, comparison);
+  const PolicyStep policy = policy_step(state);
   write_json(options.json, to_json(comparison, policy));
-  print(scene, comparison, policy);
+  print(state.settings, comparison, policy);
 }
 
 }  // namespace eigengrain::app

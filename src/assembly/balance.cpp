@@ -58,13 +58,6 @@ Survey survey(const Model& model) {
   return result;
 }
 
-Vec3 free_part(const Vec3& v, std::uint8_t fixed) {
-  Vec3 result = v;
-  for (int k = 0; k < 3; ++k)
-    if (((fixed >> k) & 1) != 0) result[k] = 0;
-  return result;
-}
-
 }  // namespace
 
 Balance balance_of(const Model& model, const BodyForces& contacts) {
@@ -76,17 +69,17 @@ Balance balance_of(const Model& model, const BodyForces& contacts) {
     const model::FixedComponents fixed = bodies.fixed[i];
     if (fixed.all()) continue;
     if (found.touch[i].contacts == 0) {
-      if (!free_part(model.gravity, fixed.translation()).isZero(0)) ++result.unsupported;
+      if (!model::free_part(model.gravity, fixed.translation()).isZero(0)) ++result.unsupported;
       continue;
     }
     ++result.bodies;
     const double force =
-        free_part(contacts.force[i] + bodies.mass[i] * model.gravity, fixed.translation()).norm();
+        model::free_part(contacts.force[i] + bodies.mass[i] * model.gravity, fixed.translation()).norm();
     result.mean += force;
     result.max = std::max(result.max, force);
     floor += std::sqrt(found.touch[i].rounding);
     if (contacts.moment.empty()) continue;
-    const double moment = free_part(contacts.moment[i], fixed.rotation()).norm() / bodies.radius[i];
+    const double moment = model::free_part(contacts.moment[i], fixed.rotation()).norm() / bodies.radius[i];
     result.moment_mean += moment;
     result.moment_max = std::max(result.moment_max, moment);
   }

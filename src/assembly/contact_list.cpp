@@ -115,7 +115,7 @@ bool precedes(const Pair& left, const Pair& right) {
 /// Fills an empty group from the pairs found and the group that was there before; both are sorted.
 template <class Group>
 void fill(Group& group, const Group* before, const std::vector<Pair>& found, const Model& model,
-          bool touching_only, bool form) {
+          bool touching_only, NewContacts touching) {
   using Kinematics = typename Group::KinematicsType;
   using State = typename Group::State;
   const contact::Placement placement = model.placement();
@@ -129,7 +129,7 @@ void fill(Group& group, const Group* before, const std::vector<Pair>& found, con
   const auto add_new = [&](const Pair& pair) {
     const contact::ContactMotion motion = contact::at_rest(Kinematics::geometry(placement, pair));
     if (group.law.acts(motion, State{}))
-      add(pair, form ? group.law.formed(motion.normal) : State{});
+      add(pair, touching == NewContacts::formed ? group.law.formed(motion.normal) : State{});
     else if (!touching_only)
       add(pair, State{});
   };
@@ -153,7 +153,7 @@ void fill(Group& group, const Group* before, const std::vector<Pair>& found, con
 
 template <class Kinematics>
 void list_kind(PairsByRule pairs, const model::Scene& scene, const contact::Contacts& before, Model& model,
-               bool touching_only, bool form) {
+               bool touching_only, NewContacts touching) {
   for (std::int32_t rule = 0; rule < static_cast<std::int32_t>(scene.contacts.size()); ++rule) {
     if (scene.contacts[rule].law == "none") continue;
     AnyGroup group = new_group<Kinematics>(scene.contacts[rule], rule);
@@ -164,7 +164,7 @@ void list_kind(PairsByRule pairs, const model::Scene& scene, const contact::Cont
           for (const AnyGroup& candidate : before.groups)
             if (const auto* same = std::get_if<Group>(&candidate); same != nullptr && same->rule == rule)
               old = same;
-          fill(concrete, old, pairs.of(rule), model, touching_only, form);
+          fill(concrete, old, pairs.of(rule), model, touching_only, touching);
           return !concrete.pairs.empty();
         },
         group);
@@ -222,15 +222,21 @@ AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, 
   return std::move(*group);
 }
 
-void list_contacts(Model& model, const model::Scene& scene, double reach, bool form) {
+void list_contacts(Model& model, const model::Scene& scene, double reach, NewContacts touching) {
   wrap(model);
   contact::Contacts before = std::exchange(model.contacts, {});
   before.for_each_group([](auto& group) { sort_contacts(group); });
   const bool touching_only = reach <= 0;
   list_kind<contact::BallBall>(ball_ball_pairs(scene, model, reach), scene, before, model, touching_only,
-                               form);
+                               touching);
   list_kind<contact::BallPlane>(ball_wall_pairs(scene, model, reach), scene, before, model, touching_only,
-                                form);
+                                touching);
+}
+
+void renew_list(State& state, double reach) {
+  list_contacts(state.model, state.settings, reach, NewContacts::unformed);
+  state.list.position = state.model.bodies.position;
+  ++state.list.rebuilds;
 }
 
 }  // namespace eigengrain::assembly

@@ -12,7 +12,7 @@ Model build_model(const model::Scene& scene, double reach) {
               .local_damping = scene.local_damping,
               .contacts = {}};
   model::sort_along_curve(model.bodies);
-  list_contacts(model, scene, reach);
+  list_contacts(model, scene, reach, NewContacts::formed);
   return model;
 }
 

@@ -16,11 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What to do about it.
+std::string remedy(const fs::path& file) {
+  std::error_code ignored;
+  const fs::path folder = file.parent_path();
+  if (!folder.empty() && !fs::exists(folder, ignored))
+    return fmt::format("there is no folder \"{}\", make it first", folder.string());
+  return "name a folder where there is room and that may be written to";
+}
+
 [[noreturn]] void throw_cannot_write(const fs::path& file, std::string_view reason) {
-  throw InputError(
-      {{file.string(), 0,
-        fmt::format("cannot be written ({}); name a folder where there is room and that may be written to",
-                    reason)}});
+  throw InputError({{file.string(), 0, fmt::format("cannot be written ({}); {}", reason, remedy(file))}});
 }
 
 /// A new name is safe only once its folder is on the disk. File systems that cannot do that are left alone.
@@ -47,7 +53,7 @@ AtomicFile::AtomicFile(fs::path target)
     : target_(std::move(target)),
       beside_(target_.string() + ".part"),
       file_(std::fopen(beside_.c_str(), "wbe")) {
-  if (!file_) throw_cannot_write(beside_);
+  if (!file_) throw_cannot_write(target_);
 }
 
 AtomicFile::~AtomicFile() {
@@ -57,11 +63,11 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) throw_cannot_write(beside_);
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) throw_cannot_write(target_);
 }
 
 void AtomicFile::commit() {
-  if (std::fflush(file_.get()) != 0 || ::fsync(::fileno(file_.get())) != 0) throw_cannot_write(beside_);
+  if (std::fflush(file_.get()) != 0 || ::fsync(::fileno(file_.get())) != 0) throw_cannot_write(target_);
   if (std::rename(beside_.c_str(), target_.c_str()) != 0) throw_cannot_write(target_);
   file_.reset();
   sync_folder(target_.parent_path());

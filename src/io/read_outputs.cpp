@@ -91,7 +91,8 @@ void read_outputs(const Section& root, SceneDraft& draft) {
   const auto section = root.section("outputs");
   if (!section) return;
   section->check_keys();
-  draft.scene.outputs.checkpoint_every = section->integer("checkpoint").value_or(draft.scene.outputs.checkpoint_every);
+  draft.scene.outputs.checkpoint_every =
+      section->integer("checkpoint").value_or(draft.scene.outputs.checkpoint_every);
   draft.scene.outputs.series_every = section->integer("series").value_or(0);
 }
 

@@ -127,12 +127,6 @@ model::Scene read_settings(const std::string& document, const fs::path& file,
                             bodies.material);
 }
 
-void list_anew(assembly::State& state) {
-  assembly::list_contacts(state.model, state.settings, state.list.skin);
-  ++state.list.rebuilds;
-  if (!state.list.position.empty()) state.list.position = state.model.bodies.position;
-}
-
 assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
                               std::span<const std::string> overrides) {
   assembly::State state;
@@ -154,7 +148,7 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   state.model.gravity = state.settings.gravity;
   state.model.local_damping = state.settings.local_damping;
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());
-  if (surroundings_moved(stored, state.settings)) list_anew(state);
+  if (surroundings_moved(stored, state.settings)) assembly::renew_list(state, state.list.skin);
   return state;
 }
 

@@ -31,8 +31,8 @@ contacts: [{between: [grain, grain], law: linear, kn: 1e5, ks: 5e4, friction: 0.
 balls: [{file: balls.txt, material: grain}]
 walls: [{box: {min: [0, 0, 0], max: [0.09, 0.09, 0.5], open: [+z]}, material: grain}]
 damping: {local: 0.1}
-run: {steps: 3000}
-outputs: {checkpoint: 20, series: 200}
+run: {steps: 1500}
+outputs: {checkpoint: 50, series: 250}
 histories: [{file: energy.csv, every: 10, of: [energies, unbalanced, walls]}]
 """
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/state.hpp"
 
 #include <string_view>
 
@@ -12,15 +13,21 @@ namespace eigengrain::assembly {
 /// InputError for a law, a kinematics or a number of parameters that do not exist.
 contact::AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, std::int32_t index);
 
+/// What a pair is that is listed for the first time and touches.
+enum class NewContacts {
+  formed,   ///< as at the start of a scene
+  unformed  ///< the next forces form it: so it forms in the same way whether it was listed before or not
+};
+
 /// Replaces the contacts of the model by all pairs whose surfaces are no more than `reach` apart (m); with
-/// reach 0 the pairs that touch, which count as formed. A contact that was there keeps its history, and one
-/// that still acts stays even beyond the reach. In a periodic cell, centres are wrapped into the cell first.
+/// reach 0 by the pairs that touch. A contact that was there keeps its history, and one that still acts stays
+/// even beyond the reach. In a periodic cell, centres are wrapped into the cell first.
 ///
 /// In each group contacts are sorted by a, then b, then image. Throws InputError where two centres coincide
 /// or no rule of the scene exists for a pair.
-///
-/// form  whether new pairs that touch count as formed. The cycle leaves that to its forces: a contact then
-///       forms in the same way whether it was listed before it touched or not
-void list_contacts(Model& model, const model::Scene& scene, double reach, bool form = true);
+void list_contacts(Model& model, const model::Scene& scene, double reach, NewContacts touching);
+
+/// A new near list for a state in motion, from where its bodies are.
+void renew_list(State& state, double reach);
 
 }  // namespace eigengrain::assembly

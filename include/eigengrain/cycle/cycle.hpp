@@ -48,8 +48,9 @@ class Cycle {
   assembly::State release() { return std::move(state_); }
 
  private:
-  /// Kick and drift of all bodies; the greatest squared way from where the list was made, m².
-  double move(double kick, double dt);
+  /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
+  /// made, m².
+  double move(double duration, double dt);
   void list_anew();
   void choose_timestep();
 

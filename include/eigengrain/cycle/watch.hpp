@@ -20,10 +20,10 @@ struct Trouble {
 ///   - an overlap of more than half of the smaller radius (of the radius, at a wall);
 ///   - a ball that moves by more than a tenth of its radius in a step: it may pass others unseen;
 ///   - energy out of nothing: kinetic and elastic energy beyond a hundred times what there was and the
-///     most that gravity has released since. Below the limit of the undamped cycle a mode stays within 22.4 times its
-///     amplitude at 0.999 of the limit (500 times its energy); at ordinary steps within a few times. Not
-///     where energy comes in unseen: gravity along a periodic axis, bodies that are moved with a given
-///     velocity.
+///     most that gravity has released since. Below the limit of the undamped cycle a mode stays within 22.4
+///     times its amplitude at 0.999 of the limit (500 times its energy); at ordinary steps within a few
+///     times. Not where energy comes in unseen: gravity along a periodic axis, bodies that are moved with a
+///     given velocity.
 class Watch {
  public:
   explicit Watch(const assembly::State& state);

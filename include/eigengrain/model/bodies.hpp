@@ -27,6 +27,14 @@ class FixedComponents {
   std::uint8_t bits_ = 0;
 };
 
+/// The free components of a vector of translation or rotation, zeros at the fixed ones.
+inline Vec3 free_part(const Vec3& v, std::uint8_t fixed) {
+  Vec3 result = v;
+  for (int k = 0; k < 3; ++k)
+    if (((fixed >> k) & 1) != 0) result[k] = 0;
+  return result;
+}
+
 /// Rigid bodies in contiguous columns, one row a body; a ball is a body with one spherical piece.
 /// The order of the rows is a storage order (see sort_along_curve); identity never changes.
 struct Bodies {

@@ -62,7 +62,7 @@ struct History {
 /// What else a run writes; 0: nothing of it.
 struct OutputChoice {
   std::int64_t checkpoint_every = 10000;  ///< steps between states
-  std::int64_t series_every = 0;      ///< steps between frames for ParaView
+  std::int64_t series_every = 0;          ///< steps between frames for ParaView
 };
 
 struct Scene {

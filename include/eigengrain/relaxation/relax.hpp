@@ -13,7 +13,6 @@ namespace eigengrain::relaxation {
 
 struct RelaxOptions {
   double tolerance = 1e-10;          ///< mean unbalanced ratio wished for
-  double hand_over = 1e-5;           ///< ratio at which Newton's method is tried first
   std::int64_t max_steps = 1000000;  ///< of the explicit stages together
   /// Called after every stage and every thousand explicit steps with a line to print; may be empty.
   std::function<void(const std::string&)> report;

@@ -148,9 +148,8 @@ class Linear {
   Vec3 trial_shear(const ContactMotion& motion, const State& old) const {
     if (params_.ks <= 0 || !old.formed()) return Vec3::Zero();
     const Vec3& n = motion.normal;
-    const Vec3 carried = params_.small_angle
-                             ? carry_shear_small_angle(old.shear, old.normal, n, motion.spin)
-                             : carry_shear(old.shear, old.normal, n, motion.spin);
+    const Vec3 carried = params_.small_angle ? carry_shear_small_angle(old.shear, old.normal, n, motion.spin)
+                                             : carry_shear(old.shear, old.normal, n, motion.spin);
     return carried - params_.ks * (motion.displacement - motion.displacement.dot(n) * n);
   }
 
