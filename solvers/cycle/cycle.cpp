@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -23,19 +24,6 @@ constexpr double skin_of_radius = 0.05;
 
 double mean_radius(const model::Bodies& bodies) {
   return std::accumulate(bodies.radius.begin(), bodies.radius.end(), 0.0) / bodies.size();
-}
-
-bool something_turns(const assembly::Model& model, const model::Scene& scene) {
-  if (!model.bodies.spin.empty()) return true;
-  bool turns = false;
-  // Contacts may form later, so the rules decide and not the contacts.
-  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
-    if (scene.contacts[r].law == "none") continue;
-    const auto group =
-        assembly::new_group(contact::BallBall::name, scene.contacts[r], static_cast<std::int32_t>(r));
-    turns = turns || std::visit([](const auto& g) { return g.law.needs_rotation(); }, group);
-  }
-  return turns;
 }
 
 /// Changes the free components of a velocity by the damped force of its body.
@@ -56,6 +44,8 @@ void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, do
 /// every contact costs accuracy and gains nothing.
 constexpr double worth_a_change = 1.05;
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 }  // namespace
 
 State start(const model::Scene& scene) {
@@ -67,7 +57,7 @@ State start(const model::Scene& scene) {
   model::Bodies& bodies = state.model.bodies;
   const auto count = static_cast<std::size_t>(bodies.size());
   if (bodies.velocity.empty()) bodies.velocity.assign(count, Vec3::Zero());
-  if (bodies.spin.empty() && something_turns(state.model, scene)) bodies.spin.assign(count, Vec3::Zero());
+  if (bodies.spin.empty() && assembly::needs_rotation(scene)) bodies.spin.assign(count, Vec3::Zero());
   state.list.position = bodies.position;
 
   assembly::BodyForces forces;
@@ -99,9 +89,9 @@ double Cycle::move(double duration, double dt) {
       bodies.position[i] += dt * bodies.velocity[i];
       if (state_.turns())
         kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation());
-      // In this order not-a-number counts as far, and the list is renewed until somebody looks.
       const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
-      way = squared <= way ? way : squared;
+      // Not a number counts as infinitely far, and the list is renewed until somebody looks.
+      if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
     farthest[chunk] = way;
   });

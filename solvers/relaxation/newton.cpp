@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <petscsnes.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <utility>
@@ -97,15 +98,18 @@ class Equations {
     EIGENGRAIN_PETSC(MatDiagonalSet(matrix_.mat(), shift.get(), ADD_VALUES));
   }
 
-  /// Mean unbalanced ratio of a residual, over the mean contact force of the committed state.
+  /// Mean unbalanced ratio of a residual, the larger of forces and moments, over the mean contact force of
+  /// the committed state.
   double ratio(Vec r) const {
     const PetscScalar* values = nullptr;
     EIGENGRAIN_PETSC(VecGetArrayRead(r, &values));
-    double sum = 0;
+    double forces = 0;
+    double moments = 0;
     for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block)
-      if (!system_.unknowns.is_rotation(block)) sum += Eigen::Map<const Vec3>(&values[3 * block]).norm();
+      (system_.unknowns.is_rotation(block) ? moments : forces) +=
+          Eigen::Map<const Vec3>(&values[3 * block]).norm();
     EIGENGRAIN_PETSC(VecRestoreArrayRead(r, &values));
-    return sum / (static_cast<double>(balance_.bodies) * balance_.mean_contact_force);
+    return std::max(forces, moments) / (static_cast<double>(balance_.bodies) * balance_.mean_contact_force);
   }
 
   /// Shortens the step of each body that would leave what the list of contacts knows; whether any had to.
@@ -331,7 +335,11 @@ NewtonResult newton(State& state, const NewtonOptions& options) {
     Vector r;
     EIGENGRAIN_PETSC(VecDuplicate(x.get(), r.put()));
     equations.residual(x.get(), r.get());  // moved() is that of the solution
-    commit(state, equations.moved());
+    // SNES may have ended on a step beyond the one that was judged.
+    if (equations.ratio(r.get()) <= context.ratio)
+      commit(state, equations.moved());
+    else
+      result.converged = result.unfinished = false;
   }
   if (!result.converged) {
     result.why = fmt::format("{}{}", SNESConvergedReasons[reason],

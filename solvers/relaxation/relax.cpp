@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace eigengrain::relaxation {
 namespace {
@@ -30,16 +31,18 @@ constexpr double newton_reach = 4;
 constexpr int most_lists = 20;
 /// Newton is asked for this part of what is wished, so that the commit's rounding does not undo it.
 constexpr double newton_margin = 0.3;
+/// Over the rounding floor; less cannot be asked of positions in doubles.
+constexpr double floor_margin = 1.5;
 
 /// Largest over mean ratio where bodies still fall or roll: there Newton is asked in vain.
 constexpr double settled_max = 100;
 
 bool at_rest_within(const Balance& balance, double ratio) {
-  return balance.unsupported == 0 && balance.mean <= ratio;
+  return balance.unsupported == 0 && std::max(balance.mean, balance.moment_mean) <= ratio;
 }
 
 bool settled_within(const Balance& balance, double ratio) {
-  return at_rest_within(balance, ratio) && balance.max <= settled_max * ratio;
+  return at_rest_within(balance, ratio) && std::max(balance.max, balance.moment_max) <= settled_max * ratio;
 }
 
 /// Everything stands still at a moment of its own.
@@ -57,16 +60,23 @@ class Relaxation {
   RelaxResult run() {
     const Stopwatch watch;
     const Clock clock(state_);
+    const GivenVelocities given(state_);
     const double damping = std::exchange(state_.model.local_damping, explicit_damping);
     halt(state_);
     result_.start = result_.end = assembly::balance_of(state_);
     double hand_over = first_hand_over;
+    bool newton_failed = false;
     while (!at_rest_within(result_.end, options_.tolerance) && !given_up()) {
-      if (!settled_within(result_.end, hand_over)) approach(hand_over);
+      const double least = std::max(options_.tolerance, floor_margin * result_.end.floor);
+      if (newton_failed || !settled_within(result_.end, hand_over)) approach(std::max(hand_over, least));
       if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
-      if (!finish()) hand_over /= 10;
+      newton_failed = !finish();
+      if (newton_failed) hand_over /= 10;
+      // Newton has done all that rounding allows, and that is not enough.
+      if (!newton_failed && !at_rest_within(result_.end, options_.tolerance)) break;
     }
     halt(state_);
+    given.restore(state_);
     clock.restore(state_);
     state_.model.local_damping = damping;
     result_.converged = at_rest_within(result_.end, options_.tolerance);
@@ -83,6 +93,22 @@ class Relaxation {
     }
     double time;
     std::int64_t step;
+  };
+
+  /// Velocities that fixed components keep: they rest while an equilibrium is sought, and move on afterwards.
+  struct GivenVelocities {
+    explicit GivenVelocities(const State& state)
+        : velocity(state.model.bodies.velocity), spin(state.model.bodies.spin) {}
+    void restore(State& state) const {
+      model::Bodies& bodies = state.model.bodies;
+      for (std::size_t i = 0; i < velocity.size(); ++i) {
+        const model::FixedComponents fixed = bodies.fixed[i];
+        bodies.velocity[i] = velocity[i] - model::free_part(velocity[i], fixed.translation());
+        if (!spin.empty()) bodies.spin[i] = spin[i] - model::free_part(spin[i], fixed.rotation());
+      }
+    }
+    std::vector<Vec3> velocity;
+    std::vector<Vec3> spin;
   };
 
   bool given_up() const { return interrupted_ || result_.explicit_steps >= options_.max_steps; }
@@ -121,7 +147,7 @@ class Relaxation {
       const double reach = newton_reach * state_.list.skin;
       assembly::renew_list(state_, reach);
       NewtonOptions wanted;
-      wanted.target = std::max(newton_margin * options_.tolerance, 1.5 * result_.end.floor);
+      wanted.target = std::max(newton_margin * options_.tolerance, floor_margin * result_.end.floor);
       wanted.reach = reach;
       const NewtonResult found = newton(state_, wanted);
       ++result_.attempts;

@@ -41,7 +41,10 @@ RunOutputs::RunOutputs(const Input& input)
     series_.emplace(input.folder, input.stem);
     if (input.continued && std::filesystem::exists(series_->list_file())) series_->continue_from(step);
   }
-  for (const model::History& history : input.state.settings.histories) {
+  for (model::History history : input.state.settings.histories) {
+    // A state with a name of its own, as relax makes it, is another run: its tables stand beside the scene's.
+    if (input.stem != std::filesystem::path(input.state.settings.name).stem())
+      history.file = input.stem + "-" + history.file;
     const bool there = input.continued && std::filesystem::exists(input.folder / history.file);
     histories_.emplace_back(input.folder, history, input.state.model.walls,
                             there ? std::optional(step) : std::nullopt);

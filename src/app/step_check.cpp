@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/cycle/policy.hpp"
 #ifdef EIGENGRAIN_PETSC
 #include "eigengrain/timestep/truth.hpp"
 #endif
@@ -21,6 +22,14 @@ StepVerdict judge_step(const assembly::State& state, double dt) {
   verdict.exact = true;
   verdict.safe = dt <= verdict.limit;
 #endif
+  return verdict;
+}
+
+StepVerdict judge_first_contacts(const assembly::State& state, double dt) {
+  model::Scene settings = state.settings;
+  settings.timestep = {model::TimestepPolicy::bound, 1.0, {}};
+  StepVerdict verdict{.dt = dt, .limit = cycle::policy_of(settings).dt(state)};
+  verdict.safe = dt <= verdict.limit;
   return verdict;
 }
 

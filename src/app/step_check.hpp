@@ -18,6 +18,9 @@ struct StepVerdict {
 /// PETSc, and only where that does not suffice by the true critical timestep (if the program has it).
 StepVerdict judge_step(const assembly::State& state, double dt);
 
+/// The same for the contacts that balls may form which touch nothing: by the proven bound alone.
+StepVerdict judge_first_contacts(const assembly::State& state, double dt);
+
 /// A sentence of warning, or nothing where the step is safe.
 std::string warning_of(const StepVerdict& verdict);
 

@@ -65,8 +65,13 @@ void relax(const Options& options) {
   // After all is saved, and only where Newton had a chance to ask for them.
   if (!options.petsc.empty() && result.attempts > 0) petsc::require_options_used();
   if (!result.converged)
-    throw SolverError(fmt::format("no equilibrium within {:g} was found; the nearest state is in {}",
-                                  options.tolerance, file.string()));
+    throw SolverError(fmt::format(
+        "no equilibrium within {:g} was found{}; the nearest state is in {}", options.tolerance,
+        options.tolerance < 1.5 * result.end.floor
+            ? fmt::format(" (the rounding of positions alone makes {:.1e}: ask for no less than twice that)",
+                          result.end.floor)
+            : "",
+        file.string()));
 }
 
 }  // namespace eigengrain::app

@@ -18,6 +18,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 #include <string>
 
@@ -43,7 +44,7 @@ class Goal {
   }
   bool wants_balance() const { return run_.unbalanced.has_value(); }
   void look(const assembly::Balance& balance) {
-    balanced_ = balance.unsupported == 0 && balance.contacts > 0 && balance.mean < *run_.unbalanced;
+    balanced_ = balance.unsupported == 0 && balance.bodies > 0 && balance.mean < *run_.unbalanced;
   }
   /// Steps up to the one that ends the run; it may end sooner.
   std::int64_t last_step() const { return run_.steps.value_or(std::numeric_limits<std::int64_t>::max()); }
@@ -96,12 +97,11 @@ class Run {
     note_interrupts();
     outputs_.write_due(state());
     outputs_.save(state());
-    if (goal_.wants_balance()) goal_.look(assembly::balance_of(state()));
+    if (goal_.wants_balance() && state().step % steps_between_looks == 0)
+      goal_.look(assembly::balance_of(state()));
     while (!goal_.reached(state()) && interrupted() == 0) {
       const std::int64_t target = std::min({next_look(), outputs_.next(state().step), goal_.last_step()});
-      const Stopwatch watch;
-      while (state().step < target && !goal_.reached(state()) && interrupted() == 0) cycle_.step();
-      seconds_ += watch.seconds();
+      step_to(target);
       attend();
     }
     look();
@@ -122,8 +122,31 @@ class Run {
   void look() {
     if (const auto trouble = watch_.look(state())) {
       progress_.finish();
-      give_up(*trouble, state(), outputs_, verdict_);
+      give_up(*trouble, state(), outputs_, verdict_now());
     }
+  }
+
+  /// The contacts of a blow-up may not have been there at the start.
+  StepVerdict verdict_now() const {
+    if (!verdict_.safe) return verdict_;
+    try {
+      const StepVerdict now = judge_step(state(), state().dt);
+      return now.safe ? judge_first_contacts(state(), state().dt) : now;
+    } catch (const std::exception&) {  // a state that cannot be judged any more
+      return verdict_;
+    }
+  }
+
+  /// Steps up to the target. A state that is lost makes other mistakes than its own; the watch knows better.
+  void step_to(std::int64_t target) {
+    const Stopwatch watch;
+    try {
+      while (state().step < target && !goal_.reached(state()) && interrupted() == 0) cycle_.step();
+    } catch (const InputError&) {
+      look();
+      throw;
+    }
+    seconds_ += watch.seconds();
   }
 
   /// What is due at the step that was reached. States are only saved after a look.

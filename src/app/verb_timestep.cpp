@@ -33,7 +33,9 @@ PolicyStep policy_step(const assembly::State& state) {
     how = fmt::format("bound: {:g} of what is proven for all near pairs", choice.safety);
   else if (choice.policy == model::TimestepPolicy::estimate)
     how = fmt::format("estimate: {:g} of diagonal", choice.safety);
-  return {std::move(how), cycle::policy_of(state.settings).dt(state)};
+  // A run that goes on has its step already.
+  const double dt = state.next_dt > 0 ? state.next_dt : cycle::policy_of(state.settings).dt(state);
+  return {std::move(how), dt};
 }
 
 /// JSON has no infinity: a step without limit is null.

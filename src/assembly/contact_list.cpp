@@ -176,12 +176,16 @@ void list_kind(PairsByRule pairs, const model::Scene& scene, const contact::Cont
 void wrap(Model& model) {
   const model::PeriodicCell& cell = model.cell;
   if (!cell.any()) return;
+  constexpr double farthest = 1e9;  // cells
   std::vector<std::array<int, 3>> moved(model.bodies.position.size());
   for (std::size_t i = 0; i < moved.size(); ++i) {
     Vec3& x = model.bodies.position[i];
     for (int k = 0; k < 3; ++k) {
       if (!cell.periodic[k]) continue;
-      moved[i][k] = static_cast<int>(std::floor((x[k] - cell.origin[k]) / cell.lengths[k]));
+      // A centre that is not a number, or lost, stays: the search finds it and says so.
+      const double cells = std::floor((x[k] - cell.origin[k]) / cell.lengths[k]);
+      if (!(std::abs(cells) < farthest)) continue;
+      moved[i][k] = static_cast<int>(cells);
       x[k] -= moved[i][k] * cell.lengths[k];
     }
   }
@@ -220,6 +224,16 @@ AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, 
   });
   if (!group) throw InputError(fmt::format("there is no contact kinematics \"{}\"", kinematics));
   return std::move(*group);
+}
+
+bool needs_rotation(const model::Scene& scene) {
+  bool turns = false;
+  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
+    if (scene.contacts[r].law == "none") continue;
+    const AnyGroup group = new_group<contact::BallBall>(scene.contacts[r], static_cast<std::int32_t>(r));
+    turns = turns || std::visit([](const auto& g) { return g.law.needs_rotation(); }, group);
+  }
+  return turns;
 }
 
 void list_contacts(Model& model, const model::Scene& scene, double reach, NewContacts touching) {

@@ -121,6 +121,20 @@ bool surroundings_moved(const model::Scene& stored, const model::Scene& now) {
                      same_place);
 }
 
+/// Whether pairs may have a law that had none: those are not in the list.
+bool pairs_may_be_new(const model::Scene& stored, const model::Scene& now) {
+  const auto same_rule = [](const model::ContactRule& l, const model::ContactRule& r) {
+    return l.first == r.first && l.second == r.second && l.law == r.law;
+  };
+  const auto same_material = [](const model::Plane& l, const model::Plane& r) {
+    return l.material == r.material;
+  };
+  return !std::equal(now.contacts.begin(), now.contacts.end(), stored.contacts.begin(), stored.contacts.end(),
+                     same_rule) ||
+         !std::equal(now.walls.begin(), now.walls.end(), stored.walls.begin(), stored.walls.end(),
+                     same_material);
+}
+
 model::Scene read_settings(const std::string& document, const fs::path& file,
                            std::span<const std::string> overrides, const model::Bodies& bodies) {
   return read_settings_text(document, file.parent_path(), file.string() + ", settings", overrides,
@@ -148,7 +162,13 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   state.model.gravity = state.settings.gravity;
   state.model.local_damping = state.settings.local_damping;
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());
-  if (surroundings_moved(stored, state.settings)) assembly::renew_list(state, state.list.skin);
+  if (surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings))
+    assembly::renew_list(state, state.list.skin);
+  // Friction that comes on lets balls turn that could not before.
+  if (state.model.bodies.spin.empty() && assembly::needs_rotation(state.settings)) {
+    state.model.bodies.spin.assign(state.model.bodies.position.size(), Vec3::Zero());
+    state.moment = state.model.bodies.spin;
+  }
   return state;
 }
 

@@ -60,8 +60,10 @@ TEST(Relax, FindsTheWeightOfAColumn) {
   double height = 0;
   for (int k = 0; k < 5; ++k) {
     height += (k == 0 ? 1.0 : 2.0) - (5 - k) * 10.0 / 1e4;
-    for (std::size_t i = 0; i < 5; ++i)
-      if (state.model.bodies.identity[i] == k) EXPECT_NEAR(state.model.bodies.position[i].z(), height, 1e-11);
+    for (std::size_t i = 0; i < 5; ++i) {
+      if (state.model.bodies.identity[i] != k) continue;
+      EXPECT_NEAR(state.model.bodies.position[i].z(), height, 1e-11);
+    }
   }
   for (const Vec3& v : state.model.bodies.velocity) EXPECT_EQ(v, Vec3(Vec3::Zero()));
   EXPECT_EQ(state.step, 0);

@@ -13,6 +13,10 @@ namespace eigengrain::assembly {
 /// InputError for a law, a kinematics or a number of parameters that do not exist.
 contact::AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, std::int32_t index);
 
+/// Whether any contact that the rules of a scene allow can turn a body. Contacts may form later, so the rules
+/// decide and not the contacts.
+bool needs_rotation(const model::Scene& scene);
+
 /// What a pair is that is listed for the first time and touches.
 enum class NewContacts {
   formed,   ///< as at the start of a scene
