@@ -165,7 +165,8 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   if (surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings))
     assembly::renew_list(state, state.list.skin);
   // Friction that comes on lets balls turn that could not before.
-  if (state.model.bodies.spin.empty() && assembly::needs_rotation(state.settings)) {
+  if (state.model.bodies.spin.empty() && !assembly::needs_rotation(stored) &&
+      assembly::needs_rotation(state.settings)) {
     state.model.bodies.spin.assign(state.model.bodies.position.size(), Vec3::Zero());
     state.moment = state.model.bodies.spin;
   }
