@@ -45,10 +45,12 @@ void add_output(CLI::App& verb, Options& options) {
       ->type_name("FOLDER");
 }
 
+#ifdef EIGENGRAIN_PETSC
 void add_petsc(CLI::App& verb, Options& options, const std::string& example) {
   verb.add_option("--petsc", options.petsc, fmt::format("options for PETSc and SLEPc, e.g. \"{}\"", example))
       ->type_name("OPTIONS");
 }
+#endif
 
 /// A word that is no verb: said plainly, with the verb that was probably meant.
 void require_known_verb(const CLI::App& program, int argc, char** argv) {
