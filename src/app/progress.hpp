@@ -26,7 +26,7 @@ class Progress {
   bool open_ = false;  ///< a changing line stands on the terminal
   Stopwatch watch_;
   double last_ = 0;             ///< seconds at the last line
-  double first_fraction_ = -1;  ///< of this session: a continued run does not begin at 0
+  double first_fraction_ = -1;  ///< of this call: a continued run does not begin at 0
 };
 
 /// "3.2 s", "4 min 10 s", "2 h 5 min".
