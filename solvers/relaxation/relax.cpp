@@ -7,6 +7,7 @@
 #include "eigengrain/cycle/policy.hpp"
 
 #include "newton.hpp"
+#include "part.hpp"
 
 #include <fmt/format.h>
 
@@ -36,6 +37,11 @@ constexpr double floor_margin = 1.5;
 
 /// Largest over mean ratio where bodies still fall or roll: there Newton is asked in vain.
 constexpr double settled_max = 100;
+/// Over the mean ratio, from where on a body counts as moving while others rest, and how many of all may do
+/// so for them to be cycled by themselves.
+constexpr double moving = 10;
+constexpr double few = 0.005;
+constexpr std::int64_t most_part_steps = 200000;  // at a time, before the whole is looked at
 
 bool at_rest_within(const Balance& balance, double ratio) {
   return balance.unsupported == 0 && std::max(balance.mean, balance.moment_mean) <= ratio;
@@ -69,6 +75,10 @@ class Relaxation {
     while (!at_rest_within(result_.end, options_.tolerance) && !given_up()) {
       const double least = std::max(options_.tolerance, floor_margin * result_.end.floor);
       if (newton_failed || !settled_within(result_.end, hand_over)) approach(std::max(hand_over, least));
+      if (!settled_within(result_.end, hand_over) && !given_up()) {
+        settle_movers(std::max(hand_over, least));
+        continue;
+      }
       if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
       newton_failed = !finish();
       if (newton_failed) hand_over /= 10;
@@ -111,7 +121,9 @@ class Relaxation {
     std::vector<Vec3> spin;
   };
 
-  bool given_up() const { return interrupted_ || result_.explicit_steps >= options_.max_steps; }
+  bool given_up() const {
+    return interrupted_ || result_.explicit_steps + result_.part_steps >= options_.max_steps;
+  }
 
   void report(const std::string& stage) const {
     if (options_.report)
@@ -121,22 +133,65 @@ class Relaxation {
           result_.end.unsupported > 0 ? fmt::format(", {} unsupported", result_.end.unsupported) : ""));
   }
 
-  /// Explicit cycles down to the ratio.
-  void approach(double ratio) {
-    const Stopwatch watch;
+  cycle::TimestepPolicy policy() const {
     model::Scene settings = state_.settings;
     settings.timestep = {model::TimestepPolicy::bound, explicit_safety, {}};
-    cycle::Cycle cycle(std::move(state_), cycle::policy_of(settings));
+    return cycle::policy_of(settings);
+  }
+
+  /// Explicit cycles down to the ratio, or until only a few bodies are left above it.
+  void approach(double ratio) {
+    const Stopwatch watch;
+    const cycle::TimestepPolicy chosen = policy();
+    cycle::Cycle cycle(std::move(state_), chosen);
     do {
       cycle.run(steps_between_looks);
       result_.explicit_steps += steps_between_looks;
       result_.end = assembly::balance_of(cycle.state());
       if (result_.explicit_steps % steps_between_reports == 0) report("explicit");
       interrupted_ = options_.interrupted && options_.interrupted();
-    } while (!settled_within(result_.end, ratio) && !given_up());
+    } while (!settled_within(result_.end, ratio) && !few_move(cycle.state(), ratio) && !given_up());
     state_ = cycle.release();
     halt(state_);
     note_method("explicit");
+    result_.explicit_seconds += watch.seconds();
+  }
+
+  /// The force above which a body counts as moving at this ratio, N.
+  double moving_force(double ratio) const { return moving * ratio * result_.end.mean_contact_force; }
+
+  bool are_few(const Movers& movers) const {
+    return !movers.bodies.empty() &&
+           static_cast<double>(movers.bodies.size()) <= few * static_cast<double>(result_.end.bodies);
+  }
+
+  /// Whether a few bodies are all that keeps the state from the ratio.
+  bool few_move(const State& state, double ratio) const {
+    const Movers movers = movers_of(state, moving_force(ratio));
+    return are_few(movers) &&
+           movers.rest <= ratio * static_cast<double>(result_.end.bodies) * result_.end.mean_contact_force;
+  }
+
+  /// Cycles of the bodies that move, and of them alone, until they rest too.
+  void settle_movers(double ratio) {
+    const Stopwatch watch;
+    const double force = moving_force(ratio);
+    const std::int64_t end = result_.part_steps + most_part_steps;
+    const auto go_on = [&] { return result_.part_steps < end && !given_up(); };
+    for (Movers movers = movers_of(state_, force); are_few(movers) && go_on();
+         movers = movers_of(state_, force)) {
+      Part part(state_, movers.bodies);
+      cycle::Cycle cycle(std::move(part.state()), policy());
+      do {
+        cycle.run(steps_between_looks);
+        result_.part_steps += steps_between_looks;
+        interrupted_ = options_.interrupted && options_.interrupted();
+      } while (!movers_of(cycle.state(), force).bodies.empty() && part.has_room(cycle.state()) && go_on());
+      part.put_back(cycle.state(), state_);
+    }
+    halt(state_);
+    result_.end = assembly::balance_of(state_);
+    report(fmt::format("{} steps of a few that moved", grouped(result_.part_steps)));
     result_.explicit_seconds += watch.seconds();
   }
 

@@ -25,6 +25,7 @@ nlohmann::ordered_json to_json(const RelaxResult& result, const State& state) {
   nlohmann::ordered_json report{{"converged", result.converged},
                                 {"method", result.method},
                                 {"steps", result.explicit_steps},
+                                {"part_steps", result.part_steps},
                                 {"iterations", result.newton_iterations},
                                 {"linear_iterations", result.linear_iterations},
                                 {"attempts", result.attempts},
@@ -56,9 +57,10 @@ void relax(const Options& options) {
   auto report = to_json(result, input.state);
   report["state"] = file.string();
   write_json(options.json, report);
-  fmt::print("{}: {} in {} ({}), {} of Newton\n{}\nstate: {}\n", input.state.settings.name,
-             counted(result.explicit_steps, "explicit step", "explicit steps"), duration_text(result.seconds),
-             result.method.empty() ? "nothing to do" : result.method,
+  fmt::print("{}: {}{} in {} ({}), {} of Newton\n{}\nstate: {}\n", input.state.settings.name,
+             counted(result.explicit_steps, "explicit step", "explicit steps"),
+             result.part_steps > 0 ? fmt::format(" and {} of a few balls", grouped(result.part_steps)) : "",
+             duration_text(result.seconds), result.method.empty() ? "nothing to do" : result.method,
              counted(result.newton_iterations, "iteration", "iterations"), balance_text(result.end),
              file.string());
   if (interrupted() != 0) throw Interrupted{interrupted()};

@@ -39,8 +39,8 @@ class Failed(Exception):
     """A code that ran and gave no result; the text is its command and its output."""
 
 
-def say(*words):
-    print(*words, file=sys.stderr, flush=True)
+def say(*words, sep=" "):
+    print(*words, file=sys.stderr, flush=True, sep=sep)
 
 
 # --- one run -------------------------------------------------------------------------------------------------------
@@ -243,7 +243,9 @@ def measure(comparison, sizes, cores_list, repeat):
     for size in sizes:
         scene = make_scene(comparison.folder, size, STEPS[size])
         for cores in cores_list:
-            lines += table_rows(scene, cores, comparison.turns(scene, cores, repeat), bare[cores])
+            rows = list(table_rows(scene, cores, comparison.turns(scene, cores, repeat), bare[cores]))
+            say(*rows, sep="\n")  # a million balls take long: what is known is not lost if they are given up
+            lines += rows
     head = [
         f"{machine()}, load {load:.1f} at the start. {', '.join(comparison.versions.values())}. "
         f"Medians (least–greatest) of {repeat} rounds, by turns. Bytes: peak resident set above that on 10 balls.",

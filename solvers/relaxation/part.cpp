@@ -1,0 +1,175 @@
+#include "part.hpp"
+
+#include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/assembly/forces.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace eigengrain::relaxation {
+namespace {
+
+using assembly::Model;
+using assembly::State;
+
+/// Bodies may go this part of the width of a ring before the part is made anew: what is left over is for the
+/// way between two looks.
+constexpr double room_of_ring = 0.5;
+
+constexpr model::FixedComponents held(63);
+
+/// Marks the bodies that share a listed pair with a marked one.
+void add_ring(const Model& model, std::vector<char>& marked) {
+  const std::vector<char> before = marked;
+  model.contacts.for_each_group([&](const auto& group) {
+    if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body)
+      for (const contact::Pair& pair : group.pairs) {
+        if (before[pair.a] != 0) marked[pair.b] = 1;
+        if (before[pair.b] != 0) marked[pair.a] = 1;
+      }
+  });
+}
+
+template <class Group>
+bool touches(const contact::Pair& pair, const std::vector<char>& marked) {
+  if constexpr (Group::KinematicsType::second_is_body)
+    if (marked[pair.b] != 0) return true;
+  return marked[pair.a] != 0;
+}
+
+/// Appends the contacts of `from` that hold on to a marked body, with rows renumbered.
+template <class Group>
+void append(const Group& from, const std::vector<char>& marked, std::span<const std::int32_t> row_of,
+            Group& to) {
+  for (std::size_t c = 0; c < from.pairs.size(); ++c) {
+    contact::Pair pair = from.pairs[c];
+    if (!touches<Group>(pair, marked)) continue;
+    pair.a = row_of[pair.a];
+    if constexpr (Group::KinematicsType::second_is_body) pair.b = row_of[pair.b];
+    to.pairs.push_back(pair);
+    to.states.push_back(from.states[c]);
+  }
+}
+
+template <class Group>
+void erase(Group& group, const std::vector<char>& marked) {
+  std::size_t kept = 0;
+  for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+    if (touches<Group>(group.pairs[c], marked)) continue;
+    group.pairs[kept] = group.pairs[c];
+    group.states[kept++] = group.states[c];
+  }
+  group.pairs.resize(kept);
+  group.states.resize(kept);
+}
+
+/// The group of the same kind and rule, made where there is none.
+template <class Group>
+Group& matching(contact::Contacts& contacts, const Group& like) {
+  for (contact::AnyGroup& candidate : contacts.groups)
+    if (auto* group = std::get_if<Group>(&candidate); group != nullptr && group->rule == like.rule)
+      return *group;
+  return std::get<Group>(contacts.groups.emplace_back(Group{like.law, like.rule, {}, {}}));
+}
+
+double mean_radius(const model::Bodies& bodies, std::span<const std::int32_t> rows) {
+  double sum = 0;
+  for (const std::int32_t row : rows) sum += bodies.radius[row];
+  return sum / static_cast<double>(rows.size());
+}
+
+}  // namespace
+
+Movers movers_of(const State& state, double force) {
+  const model::Bodies& bodies = state.model.bodies;
+  Movers movers;
+  double pushes = 0;
+  double turns = 0;
+  for (std::int32_t body = 0; body < bodies.size(); ++body) {
+    const auto i = static_cast<std::size_t>(body);
+    const model::FixedComponents fixed = bodies.fixed[i];
+    const double push =
+        model::free_part(state.force[i] + bodies.mass[i] * state.model.gravity, fixed.translation()).norm();
+    const double turn =
+        state.turns() ? model::free_part(state.moment[i], fixed.rotation()).norm() / bodies.radius[i] : 0.0;
+    if (std::max(push, turn) > force) {
+      movers.bodies.push_back(body);
+    } else {
+      pushes += push;
+      turns += turn;
+    }
+  }
+  movers.rest = std::max(pushes, turns);
+  return movers;
+}
+
+Part::Part(State& whole, std::span<const std::int32_t> movers) {
+  const double ring = mean_radius(whole.model.bodies, movers);
+  room_ = room_of_ring * ring;
+  assembly::renew_list(whole, ring);
+
+  const auto count = static_cast<std::size_t>(whole.model.bodies.size());
+  std::vector<char> free(count, 0);
+  for (const std::int32_t mover : movers) free[mover] = 1;
+  add_ring(whole.model, free);
+  std::vector<char> chosen = free;
+  add_ring(whole.model, chosen);
+  std::vector<std::int32_t> row_of(count, -1);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (chosen[i] == 0) continue;
+    row_of[i] = static_cast<std::int32_t>(bodies_.size());
+    bodies_.push_back(static_cast<std::int32_t>(i));
+    free_.push_back(free[i]);
+  }
+
+  state_.settings = whole.settings;
+  state_.model = {.bodies = model::reordered(whole.model.bodies, bodies_),
+                  .walls = whole.model.walls,
+                  .cell = whole.model.cell,
+                  .gravity = whole.model.gravity,
+                  .local_damping = whole.model.local_damping,
+                  .contacts = {}};
+  whole.model.contacts.for_each_group(
+      [&](const auto& group) { append(group, free, row_of, matching(state_.model.contacts, group)); });
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    state_.force.push_back(whole.force[bodies_[k]]);
+    if (whole.turns()) state_.moment.push_back(whole.moment[bodies_[k]]);
+    if (free_[k] == 0) state_.model.bodies.fixed[k] = held;
+  }
+  position_ = state_.model.bodies.position;
+  state_.list.skin = whole.list.skin;
+}
+
+bool Part::has_room(const State& state) const {
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    if (!((state.model.bodies.position[k] - position_[k]).squaredNorm() <= room_ * room_)) return false;
+  return true;
+}
+
+void Part::put_back(const State& part, State& whole) const {
+  std::vector<char> free(static_cast<std::size_t>(whole.model.bodies.size()), 0);
+  model::Bodies& bodies = whole.model.bodies;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (free_[k] == 0) continue;
+    const std::int32_t row = bodies_[k];
+    free[row] = 1;
+    bodies.position[row] = part.model.bodies.position[k];
+    bodies.velocity[row] = part.model.bodies.velocity[k];
+    if (whole.turns()) bodies.spin[row] = part.model.bodies.spin[k];
+  }
+  whole.model.contacts.for_each_group([&](auto& group) { erase(group, free); });
+  part.model.contacts.for_each_group(
+      [&](const auto& group) { append(group, free_, bodies_, matching(whole.model.contacts, group)); });
+  assembly::renew_list(whole, whole.list.skin);
+
+  assembly::BodyForces sum;
+  const std::vector<Vec3> still(bodies.position.size(), Vec3::Zero());
+  assembly::ContactForceSum(whole.model, whole.turns())
+      .advance(whole.model,
+               {bodies.position, still, whole.turns() ? std::span(still) : std::span<const Vec3>(), 1.0},
+               sum);
+  whole.force = std::move(sum.force);
+  whole.moment = std::move(sum.moment);
+}
+
+}  // namespace eigengrain::relaxation
