@@ -20,6 +20,7 @@ LAYERS = [
     ["model"],
     ["contact", "fem", "search"],
     ["assembly"],
+    ["measures"],
     ["io"],
     ["cycle", "petsc"],
     ["timestep", "relaxation", "spectrum"],

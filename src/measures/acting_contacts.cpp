@@ -1,0 +1,104 @@
+#include "eigengrain/measures/acting_contacts.hpp"
+
+#include "eigengrain/base/adjacency.hpp"
+
+#include <cstddef>
+
+namespace eigengrain::measures {
+namespace {
+
+Vec3 across(const Vec3& v, const Vec3& n) {
+  return v - v.dot(n) * n;
+}
+
+/// After a slip the shear force is at the limit to rounding only, so the contact is probed with a little
+/// more.
+template <class Law, class State>
+bool slides(const Law& law, const contact::ContactMotion& motion, const State& state, const Vec3& force) {
+  constexpr double probe = 1e-6;  // of the shear force
+  const double shear = across(force, motion.normal).norm();
+  const double stiffness = law.stiffness(motion, state).shear;
+  if (!(shear > 0) || !(stiffness > 0)) return false;
+  contact::ContactMotion more = motion;
+  more.displacement = -probe / stiffness * across(force, motion.normal);
+  State discarded;
+  const double raised = across(law.evaluate(more, state, discarded).force, motion.normal).norm();
+  return raised - shear < 0.5 * probe * shear;
+}
+
+}  // namespace
+
+std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
+  std::vector<ActingContact> result;
+  const contact::Placement placement = model.placement();
+  model.contacts.for_each_group([&](const auto& group) {
+    using Group = std::decay_t<decltype(group)>;
+    using Kinematics = typename Group::KinematicsType;
+    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      const contact::Pair& pair = group.pairs[c];
+      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+      const contact::ContactMotion motion = contact::at_rest(geometry);
+      if (!group.law.acts(motion, group.states[c])) continue;
+      typename Group::State discarded;
+      ActingContact& contact = result.emplace_back();
+      contact.a = pair.a;
+      contact.normal = geometry.normal;
+      contact.force = group.law.evaluate(motion, group.states[c], discarded).force;
+      contact.slides = slides(group.law, motion, group.states[c], contact.force);
+      if constexpr (Kinematics::second_is_body) {
+        contact.b = pair.b;
+        contact.branch = geometry.lever_a - geometry.lever_b;
+      } else {
+        contact.b = ActingContact::wall;
+        contact.branch = geometry.lever_a;
+      }
+    }
+  });
+  return result;
+}
+
+std::int32_t least_contacts(const assembly::Model& model) {
+  bool shear = false;
+  model.contacts.for_each_group([&](const auto& group) { shear = shear || group.law.needs_rotation(); });
+  if (shear) return 2;
+  return model.gravity.isZero(0) ? 4 : 3;
+}
+
+std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingContact> contacts,
+                           std::int32_t least) {
+  const std::int32_t bodies = model.bodies.size();
+  std::vector<std::int32_t> first;
+  std::vector<std::int32_t> second;
+  std::vector<std::int32_t> count(static_cast<std::size_t>(bodies), 0);
+  for (const ActingContact& contact : contacts) {
+    first.push_back(contact.a);
+    second.push_back(contact.b);
+    ++count[contact.a];
+    if (contact.b != ActingContact::wall) ++count[contact.b];
+  }
+  const Adjacency as_first = group_by_row(bodies, first);
+  const Adjacency as_second = group_by_row(bodies, second);
+
+  std::vector<bool> removed(static_cast<std::size_t>(bodies), false);
+  std::vector<std::int32_t> waiting;
+  const auto look = [&](std::int32_t body) {
+    if (removed[body] || count[body] >= least || model.bodies.fixed[body].translation() == 7) return;
+    removed[body] = true;
+    waiting.push_back(body);
+  };
+  for (std::int32_t body = 0; body < bodies; ++body) look(body);
+  while (!waiting.empty()) {
+    const std::int32_t body = waiting.back();
+    waiting.pop_back();
+    const auto lose = [&](std::int32_t other) {
+      if (other == ActingContact::wall) return;
+      --count[other];
+      look(other);
+    };
+    for (const std::int32_t c : as_first.links(body)) lose(contacts[c].b);
+    for (const std::int32_t c : as_second.links(body)) lose(contacts[c].a);
+  }
+  return removed;
+}
+
+}  // namespace eigengrain::measures

@@ -1,0 +1,133 @@
+#include "eigengrain/measures/measure.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <numbers>
+
+namespace eigengrain::measures {
+namespace {
+
+/// Below this ratio of the moments of the centres they lie in a plane, to rounding.
+constexpr double flat = 1e-12;
+
+/// Takes the mean off before moments are formed, which would lose digits far from the origin.
+void centre(std::vector<Vec3>& values) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& value : values) mean += value / static_cast<double>(values.size());
+  for (Vec3& value : values) value -= mean;
+}
+
+}  // namespace
+
+Mat3 mean_stress(const Window& window, const assembly::Model& model,
+                 std::span<const ActingContact> contacts) {
+  Mat3 sum = Mat3::Zero();
+  for (const ActingContact& contact : contacts) {
+    const double part = window.line(model.bodies.position[contact.a], contact.branch);
+    if (part > 0) sum -= part * contact.force * contact.branch.transpose();
+  }
+  return sum / window.volume();
+}
+
+std::vector<Mat3> body_stresses(const assembly::Model& model) {
+  std::vector<Mat3> stress(model.bodies.position.size(), Mat3::Zero());
+  const contact::Placement placement = model.placement();
+  model.contacts.for_each_group([&](const auto& group) {
+    using Group = std::decay_t<decltype(group)>;
+    using Kinematics = typename Group::KinematicsType;
+    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      const contact::Pair& pair = group.pairs[c];
+      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+      typename Group::State discarded;
+      const Vec3 force = group.law.evaluate(contact::at_rest(geometry), group.states[c], discarded).force;
+      stress[pair.a] -= force * geometry.lever_a.transpose();
+      if constexpr (Kinematics::second_is_body) stress[pair.b] += force * geometry.lever_b.transpose();
+    }
+  });
+  for (std::size_t i = 0; i < stress.size(); ++i)
+    stress[i] /= 4 * std::numbers::pi / 3 * std::pow(model.bodies.radius[i], 3);
+  return stress;
+}
+
+std::optional<Mat3> velocity_gradient(const Window& window, const model::Bodies& bodies) {
+  std::vector<Vec3> position;
+  std::vector<Vec3> velocity;
+  for (std::size_t i = 0; i < bodies.position.size(); ++i)
+    window.for_each_inside(bodies.position[i], [&](const Vec3& image) {
+      position.push_back(image);
+      velocity.push_back(bodies.velocity.empty() ? Vec3(Vec3::Zero()) : bodies.velocity[i]);
+    });
+  centre(position);
+  centre(velocity);
+  Mat3 moments = Mat3::Zero();
+  Mat3 mixed = Mat3::Zero();
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    moments += position[i] * position[i].transpose();
+    mixed += velocity[i] * position[i].transpose();
+  }
+  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(moments, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(principal[0] > flat * principal[2])) return std::nullopt;
+  // L moments = mixed
+  return Mat3(moments.ldlt().solve(mixed.transpose()).transpose());
+}
+
+double porosity(const Window& window, const model::Bodies& bodies) {
+  double solid = 0;
+  for (std::size_t i = 0; i < bodies.position.size(); ++i)
+    solid += window.ball(bodies.position[i], bodies.radius[i]);
+  return 1 - solid / window.volume();
+}
+
+Fabric fabric(const Window& window, const assembly::Model& model, std::span<const ActingContact> contacts,
+              const std::vector<bool>& rattlers) {
+  Fabric result;
+  std::vector<std::int32_t> seen(model.bodies.position.size(), 0);  // images inside
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    window.for_each_inside(model.bodies.position[i], [&](const Vec3&) { ++seen[i]; });
+    result.bodies += seen[i];
+    if (rattlers[i]) result.rattlers += seen[i];
+  }
+  Mat3 tensor = Mat3::Zero();
+  std::int64_t ends = 0;
+  std::int64_t sliding = 0;
+  std::int64_t held_ends = 0;
+  for (const ActingContact& contact : contacts) {
+    const bool at_wall = contact.b == ActingContact::wall;
+    const std::int64_t times = seen[contact.a] + (at_wall ? 0 : seen[contact.b]);
+    ends += times;
+    if (contact.slides) sliding += times;
+    if (!rattlers[contact.a] && (at_wall || !rattlers[contact.b])) held_ends += times;
+    tensor += static_cast<double>(times) * contact.normal * contact.normal.transpose();
+  }
+  const auto mean = [](std::int64_t sum, std::int64_t count) {
+    return count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : nothing;
+  };
+  result.coordination = mean(ends, result.bodies);
+  result.without_rattlers = mean(held_ends, result.bodies - result.rattlers);
+  result.sliding = mean(sliding, ends);
+  if (ends > 0) result.tensor = tensor / static_cast<double>(ends);
+  return result;
+}
+
+std::optional<Mat3> Measure::strain_rate() const {
+  if (!velocity_gradient) return std::nullopt;
+  return Mat3(0.5 * (*velocity_gradient + velocity_gradient->transpose()));
+}
+
+std::vector<Measure> measure(const assembly::Model& model, std::span<const model::Region> regions) {
+  std::vector<Measure> result;
+  const std::vector<ActingContact> contacts = acting_contacts(model);
+  const std::vector<bool> loose = rattlers(model, contacts, least_contacts(model));
+  for (const model::Region& region : regions) {
+    const Window window(region, model);
+    result.push_back({.volume = window.volume(),
+                      .stress = mean_stress(window, model, contacts),
+                      .velocity_gradient = velocity_gradient(window, model.bodies),
+                      .porosity = porosity(window, model.bodies),
+                      .fabric = fabric(window, model, contacts, loose)});
+  }
+  return result;
+}
+
+}  // namespace eigengrain::measures
