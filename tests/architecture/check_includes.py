@@ -19,7 +19,7 @@ LAYERS = [
     ["base"],
     ["model"],
     ["contact", "fem", "search"],
-    ["assembly"],
+    ["assembly", "generate"],
     ["io"],
     ["cycle", "petsc"],
     ["timestep", "relaxation", "spectrum"],
