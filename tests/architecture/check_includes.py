@@ -20,7 +20,7 @@ LAYERS = [
     ["model"],
     ["contact", "fem", "search"],
     ["assembly"],
-    ["measures"],
+    ["measures", "generate"],
     ["io"],
     ["cycle", "petsc"],
     ["timestep", "relaxation", "spectrum"],
