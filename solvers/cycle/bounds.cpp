@@ -53,13 +53,7 @@ double timestep_of(double lambda) {
   return lambda > 0 ? 2.0 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace
-
-double damped_timestep(double undamped_dt, double local_damping) {
-  return undamped_dt / std::sqrt(1.0 + local_damping);
-}
-
-double diagonal_estimate(const LinearSystem& system) {
+double elastic_estimate(const LinearSystem& system) {
   const std::vector<Vec6> scale = scale_of_bodies(system);
   std::vector<Vec6> stiffness(scale.size(), Vec6::Zero());
   for (const ContactElement& element : system.elements) {
@@ -70,6 +64,38 @@ double diagonal_estimate(const LinearSystem& system) {
   for (std::size_t i = 0; i < stiffness.size(); ++i)
     largest = std::max(largest, scale[i].cwiseAbs2().cwiseProduct(stiffness[i]).maxCoeff());
   return timestep_of(4 * largest);
+}
+
+/// Eq. 1.35: k/F(β)², F(β) = √(1 + β²) - β, along and across n.
+LinearSystem stiffened_by_dashpots(const LinearSystem& system) {
+  LinearSystem result = system;
+  const auto factor = [](double beta) {
+    const double root = std::sqrt(1 + beta * beta) + beta;  // 1/F(β)
+    return root * root;
+  };
+  for (std::size_t e = 0; e < result.elements.size(); ++e) {
+    result.elements[e].stiffness.normal *= factor(result.damping[e].beta_n);
+    result.elements[e].stiffness.shear *= factor(result.damping[e].beta_s);
+  }
+  return result;
+}
+
+/// The system with C in place of K.
+LinearSystem viscosity_alone(const LinearSystem& system) {
+  LinearSystem result = system;
+  for (std::size_t e = 0; e < result.elements.size(); ++e)
+    result.elements[e].stiffness = {.normal = result.damping[e].normal, .shear = result.damping[e].shear};
+  return result;
+}
+
+}  // namespace
+
+double damped_timestep(double undamped_dt, double local_damping) {
+  return undamped_dt / std::sqrt(1.0 + local_damping);
+}
+
+double diagonal_estimate(const LinearSystem& system) {
+  return system.damping.empty() ? elastic_estimate(system) : elastic_estimate(stiffened_by_dashpots(system));
 }
 
 BlockBound::BlockBound(const LinearSystem& system)
@@ -141,6 +167,23 @@ double scaled_block_bound(const LinearSystem& system, int sweeps) {
   BlockBound bound(system);
   for (int sweep = 0; sweep < sweeps; ++sweep) bound.sweep();
   return bound.timestep();
+}
+
+double damped_block_bound(const LinearSystem& system, double local_damping, int sweeps) {
+  const double elastic = damped_timestep(scaled_block_bound(system, sweeps), local_damping);
+  if (system.damping.empty() || !(elastic > 0)) return elastic;
+  // With λ(μ) the largest eigenvalue of (1 + α)M⁻¹(K + μC), which rises with μ, any μ with μ² >= λ(μ) will
+  // do. The root of μ² = b_K + μ b_C does, as λ(μ) <= b_K + μ b_C; and then μ' = √b with any bound b of λ(μ)
+  // that is less than μ²: λ(μ') <= λ(μ) <= μ'².
+  const LinearSystem viscous = viscosity_alone(system);
+  const auto rate = [](double dt) { return 4 / (dt * dt); };
+  const double b_elastic = rate(elastic);
+  const double b_viscous = rate(damped_timestep(block_bound(viscous), local_damping));
+  double mu = 0.5 * (b_viscous + std::sqrt(b_viscous * b_viscous + 4 * b_elastic));
+  for (int refinement = 0; refinement < 4; ++refinement)
+    mu = std::min(mu,
+                  2 / damped_timestep(scaled_block_bound(with_viscosity(system, mu), sweeps), local_damping));
+  return 2 / mu;
 }
 
 }  // namespace eigengrain::cycle

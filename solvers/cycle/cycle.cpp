@@ -121,7 +121,7 @@ void Cycle::step() {
 
   model::Bodies& bodies = state_.model.bodies;
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
-  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt}, sum);
+  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt, 1 / dt}, sum);
   state_.force = std::move(sum.force);
   state_.moment = std::move(sum.moment);
 

@@ -135,7 +135,8 @@ Truth critical_timestep(const assembly::LinearSystem& system, double local_dampi
   truth.residual = relative_residual(matrix.get(), x.get(), truth.lambda_max);
   require_eigenpair(truth);
   truth.dt = 2.0 / std::sqrt(truth.lambda_max);
-  truth.limit = cycle::damped_timestep(truth.dt, local_damping);
+  truth.limit = system.damping.empty() ? cycle::damped_timestep(truth.dt, local_damping)
+                                       : cycle::damped_block_bound(system, local_damping);
   truth.products = product.products();
   truth.seconds = watch.seconds();
   return truth;

@@ -14,9 +14,10 @@ namespace eigengrain::app {
 StepVerdict judge_step(const assembly::State& state, double dt) {
   const assembly::LinearSystem system(state.model);
   const double damping = state.model.local_damping;
-  StepVerdict verdict{.dt = dt, .limit = cycle::damped_timestep(cycle::scaled_block_bound(system), damping)};
+  StepVerdict verdict{.dt = dt, .limit = cycle::damped_block_bound(system, damping)};
   verdict.safe = dt <= verdict.limit;
-  if (verdict.safe) return verdict;
+  // With dashpots there is no exact limit to ask for.
+  if (verdict.safe || !system.damping.empty()) return verdict;
 #ifdef EIGENGRAIN_PETSC
   verdict.limit = timestep::critical_timestep(system, damping).limit;
   verdict.exact = true;

@@ -48,7 +48,7 @@ std::string rule_text(const model::Scene& scene, std::int32_t rule) {
   const auto name = [&](std::int32_t material) {
     return material == model::ContactRule::any_material ? std::string("any") : scene.materials[material].name;
   };
-  return fmt::format("contacts[{}] {}-{}", rule, name(r.first), name(r.second));
+  return fmt::format("contacts[{}] {}-{}", r.entry, name(r.first), name(r.second));
 }
 
 /// What the program could do and this scene does not ask for: none of it is stored or computed.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -20,17 +21,26 @@ using contact::AnyGroup;
 using contact::ContactGroup;
 using contact::Pair;
 
+/// The values of all parameters of a law: those of the rule, and defaults for those left out at the end.
+std::vector<double> completed(const model::ContactRule& rule, std::int32_t index,
+                              std::span<const contact::ParameterDescription> parameters) {
+  std::vector<double> values = rule.parameters;
+  while (values.size() < parameters.size() && parameters[values.size()].default_value)
+    values.push_back(*parameters[values.size()].default_value);
+  if (values.size() != parameters.size())
+    throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
+                                 rule.parameters.size(), rule.law, parameters.size()));
+  return values;
+}
+
 template <class Kinematics>
 AnyGroup new_group(const model::ContactRule& rule, std::int32_t index) {
   std::optional<AnyGroup> group;
   for_each_type(contact::LawTypes{}, [&](auto tag) {
     using Law = typename decltype(tag)::type;
     if (group || Law::name != rule.law) return;
-    if (rule.parameters.size() != Law::parameters.size())
-      throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
-                                   rule.parameters.size(), Law::name, Law::parameters.size()));
-    if (Law::serves(rule.parameters))
-      group = ContactGroup<Kinematics, Law>{Law::from_values(rule.parameters), index, {}, {}};
+    const std::vector<double> values = completed(rule, index, Law::parameters);
+    if (Law::serves(values)) group = ContactGroup<Kinematics, Law>{Law::from_values(values), index, {}, {}};
   });
   if (!group) throw InputError(fmt::format("contacts[{}]: there is no law \"{}\"", index, rule.law));
   return std::move(*group);

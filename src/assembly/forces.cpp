@@ -5,6 +5,12 @@
 
 #include <algorithm>
 
+#ifdef __SANITIZE_ADDRESS__
+#define EIGENGRAIN_FLAT
+#else
+#define EIGENGRAIN_FLAT __attribute__((flatten))
+#endif
+
 namespace eigengrain::assembly {
 namespace {
 
@@ -74,8 +80,8 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using State = typename std::decay_t<Group>::State;
   // Flat: the small functions of kinematics and laws are many, and calls among them pass everything through
-  // memory.
-  const auto one_chunk = [&](std::int64_t, std::int64_t, std::int64_t chunk) __attribute__((flatten)) {
+  // memory. Not under sanitizers, whose checks make hundreds of megabytes of it.
+  const auto one_chunk = [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT {
     for (std::int64_t index = plan.starts[chunk]; index < plan.starts[chunk + 1]; ++index) {
       const auto c = static_cast<std::size_t>(index);
       const contact::Pair& pair = group.pairs[c];
@@ -193,10 +199,8 @@ std::vector<Vec3> wall_forces(const Model& model) {
     using Group = std::decay_t<decltype(group)>;
     if constexpr (!Group::KinematicsType::second_is_body) {
       for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-        typename Group::State discarded;
         const contact::ContactGeometry geometry = Group::KinematicsType::geometry(placement, group.pairs[c]);
-        forces[group.pairs[c].b] +=
-            group.law.evaluate(contact::at_rest(geometry), group.states[c], discarded).force;
+        forces[group.pairs[c].b] += contact::force_now(group.law, geometry, group.states[c]).force;
       }
     }
   });

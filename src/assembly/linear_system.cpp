@@ -1,6 +1,7 @@
 #include "eigengrain/assembly/linear_system.hpp"
 
 #include <cmath>
+#include <type_traits>
 
 namespace eigengrain::assembly {
 namespace {
@@ -16,10 +17,47 @@ std::vector<double> mass_diagonal(const model::Bodies& bodies, const Unknowns& u
   return diagonal;
 }
 
+bool has_dashpots(const Model& model) {
+  bool found = false;
+  model.contacts.for_each_group([&](const auto& group) {
+    found = found || contact::asks_rate<typename std::decay_t<decltype(group)>::LawType>;
+  });
+  return found;
+}
+
+std::vector<contact::ContactDamping> contact_damping(const Model& model, Listed which) {
+  std::vector<contact::ContactDamping> damping;
+  if (!has_dashpots(model)) return damping;
+  const std::vector<double>& mass = model.bodies.mass;
+  for_each_element(model, which, [&](const auto& law, const contact::ContactElement& e) {
+    contact::ContactDamping& found = damping.emplace_back();
+    if constexpr (contact::asks_rate<std::decay_t<decltype(law)>>) {
+      const double a = mass[e.a];
+      const double reduced = e.b == contact::no_body ? a : a * mass[e.b] / (a + mass[e.b]);
+      const contact::DampingRatios beta = law.damping();
+      found = {.beta_n = beta.normal,
+               .beta_s = beta.shear,
+               .normal = 2 * beta.normal * std::sqrt(reduced * e.stiffness.normal),
+               .shear = 2 * beta.shear * std::sqrt(reduced * e.stiffness.shear)};
+    }
+  });
+  return damping;
+}
+
 }  // namespace
+
+LinearSystem with_viscosity(const LinearSystem& system, double mu) {
+  LinearSystem result = system;
+  for (std::size_t e = 0; e < result.damping.size(); ++e) {
+    result.elements[e].stiffness.normal += mu * result.damping[e].normal;
+    result.elements[e].stiffness.shear += mu * result.damping[e].shear;
+  }
+  return result;
+}
 
 LinearSystem::LinearSystem(const Model& model, Listed which)
     : elements(contact_elements(model, which)),
+      damping(contact_damping(model, which)),
       unknowns(model.bodies, elements),
       mass(mass_diagonal(model.bodies, unknowns)) {}
 

@@ -47,7 +47,8 @@ Mat12 consistent_tangent(const ContactGeometry& geometry, double curvature, cons
   const Mat3x12 frame = curvature * cross_matrix(n) * delta_branch + along * mean_rotation();  // Ω
 
   const Mat3x12 d_force = -tangent.translation * delta - cross_matrix(force.force) * frame;
-  const Mat3x12 d_moment = -tangent.rotation * relative_rotation() - cross_matrix(force.moment) * frame;
+  const Mat3x12 d_moment =
+      -tangent.rotation * relative_rotation() - tangent.coupling * delta - cross_matrix(force.moment) * frame;
   const auto moving_lever = [&](const Vec3& lever, double half) -> Mat3x12 {
     return (half * along + lever.dot(n) * curvature * across) * delta_branch;
   };

@@ -13,6 +13,8 @@ void add_description(std::vector<LawDescription>& table) {
   const auto same_name = [](const LawDescription& entry) { return entry.name == Law::name; };
   if (std::none_of(table.begin(), table.end(), same_name))
     table.push_back({Law::name, Law::description, Law::parameters});
+  // Of the classes of a name those come last that use all parameters, and know what goes together.
+  if constexpr (requires { &Law::mistake; }) table.back().mistake = &Law::mistake;
 }
 
 std::vector<LawDescription> describe() {

@@ -32,26 +32,6 @@ void check_densities(const SceneDraft& draft, Diagnostics& diagnostics) {
   }
 }
 
-using MaterialPair = std::pair<std::int32_t, std::int32_t>;
-
-/// The pairs of materials that can meet.
-std::set<MaterialPair> meeting_pairs(const model::Scene& scene) {
-  const std::vector<std::int64_t> balls = balls_of_materials(scene);
-  const auto count = static_cast<std::int32_t>(balls.size());
-  const auto balls_of = [&](std::int32_t material) { return balls[material]; };
-  std::set<MaterialPair> pairs;
-  for (std::int32_t a = 0; a < count; ++a) {
-    if (balls_of(a) == 0) continue;
-    // A single ball can still meet its own periodic image.
-    if (balls_of(a) > 1 || scene.cell.any()) pairs.insert({a, a});
-    for (std::int32_t b = a + 1; b < count; ++b)
-      if (balls_of(b) > 0) pairs.insert({a, b});
-    for (const model::Plane& wall : scene.walls)
-      if (wall.material >= 0) pairs.insert(std::minmax(a, wall.material));
-  }
-  return pairs;
-}
-
 void check_rules(const Section& root, const SceneDraft& draft) {
   const model::Scene& scene = draft.scene;
   if (!draft.contacts_complete) return;
@@ -123,6 +103,23 @@ void check_coincidence(const SceneDraft& draft, Diagnostics& diagnostics) {
 }
 
 }  // namespace
+
+std::set<std::pair<std::int32_t, std::int32_t>> meeting_pairs(const model::Scene& scene) {
+  const std::vector<std::int64_t> balls = balls_of_materials(scene);
+  const auto count = static_cast<std::int32_t>(balls.size());
+  const auto balls_of = [&](std::int32_t material) { return balls[material]; };
+  std::set<std::pair<std::int32_t, std::int32_t>> pairs;
+  for (std::int32_t a = 0; a < count; ++a) {
+    if (balls_of(a) == 0) continue;
+    // A single ball can still meet its own periodic image.
+    if (balls_of(a) > 1 || scene.cell.any()) pairs.insert({a, a});
+    for (std::int32_t b = a + 1; b < count; ++b)
+      if (balls_of(b) > 0) pairs.insert({a, b});
+    for (const model::Plane& wall : scene.walls)
+      if (wall.material >= 0) pairs.insert(std::minmax(a, wall.material));
+  }
+  return pairs;
+}
 
 void add_notes(SceneDraft& draft) {
   model::Scene& scene = draft.scene;

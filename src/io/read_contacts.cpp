@@ -48,7 +48,17 @@ std::optional<double> read_parameter(const Section& section, const contact::Para
   return flag ? std::optional(*flag ? 1.0 : 0.0) : std::nullopt;
 }
 
-void read_law(const Section& any_law, ContactRule& rule) {
+/// Whether the entry leaves a parameter to the materials: one without default always, and one with a default
+/// where some material says something.
+bool leaves_to_materials(const Section& section, const contact::ParameterDescription& parameter,
+                         const model::Scene& scene) {
+  if (parameter.of_material == nullptr || section.has(parameter.name)) return false;
+  return !parameter.default_value ||
+         std::any_of(scene.materials.begin(), scene.materials.end(),
+                     [&](const model::Material& m) { return parameter.of_material(m).has_value(); });
+}
+
+void read_law(const Section& any_law, const model::Scene& scene, ContactRule& rule) {
   const auto name = any_law.text("law");
   if (!name) return any_law.check_keys();
   const Section section = any_law.with_law(*name);
@@ -56,8 +66,15 @@ void read_law(const Section& any_law, ContactRule& rule) {
   rule.law = *name;
   const contact::LawDescription* law = contact::find_law(*name);
   if (law == nullptr) return;  // "none"
-  for (const contact::ParameterDescription& parameter : law->parameters)
-    rule.parameters.push_back(read_parameter(section, parameter).value_or(0));
+  const std::int64_t mistakes_before = section.diagnostics().count();
+  for (const contact::ParameterDescription& parameter : law->parameters) {
+    if (leaves_to_materials(section, parameter, scene))
+      rule.parameters.push_back(left_to_materials);
+    else
+      rule.parameters.push_back(read_parameter(section, parameter).value_or(0));
+  }
+  if (law->mistake == nullptr || section.diagnostics().count() > mistakes_before) return;
+  if (const std::string mistake = law->mistake(rule.parameters); !mistake.empty()) section.report(mistake);
 }
 
 /// Whether the rule matches every pair that the other one does ("any" is matched by "any" only).
@@ -75,9 +92,10 @@ void read_contacts(const Section& root, SceneDraft& draft) {
   draft.contacts_complete = root.diagnostics().count() == mistakes_before;
   for (const Section& section : sections) {
     ContactRule rule;
+    rule.entry = static_cast<std::int32_t>(&section - sections.data());
     const bool known_pair = read_between(section, draft.scene, rule);
     draft.contacts_complete = draft.contacts_complete && known_pair;
-    read_law(section, rule);
+    read_law(section, draft.scene, rule);
     if (!known_pair) continue;
     // A pair whose law has mistakes still counts as one that has a law: one report is enough.
     const auto earlier =
@@ -89,6 +107,7 @@ void read_contacts(const Section& root, SceneDraft& draft) {
                       "the special entry first",
                       paths[static_cast<std::size_t>(earlier - rules.begin())]));
     rules.push_back(std::move(rule));
+    draft.contact_places.push_back(section.place());
     paths.push_back(fmt::format("{} (line {})", section.path(), section.place().line));
   }
 }

@@ -34,7 +34,13 @@ void read_materials(const Section& root, SceneDraft& draft) {
     const double density = section.quantity("density").value_or(section.has("density") ? 1.0 : 0.0);
     if (!name) continue;
     check_name(section, *name, draft);
-    draft.scene.materials.push_back({*name, density});
+    draft.scene.materials.push_back({.name = *name,
+                                     .density = density,
+                                     .rigid = section.flag("rigid").value_or(false),
+                                     .young = section.quantity("young"),
+                                     .poisson = section.quantity("poisson"),
+                                     .kn = section.quantity("kn"),
+                                     .ks = section.quantity("ks")});
     draft.material_places.push_back(section.place());
   }
 }

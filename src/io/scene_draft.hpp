@@ -7,7 +7,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace eigengrain::io {
@@ -28,6 +31,7 @@ struct SceneDraft {
   std::filesystem::path folder;  ///< that paths are relative to
   BallPlaces ball_places;
   std::vector<Place> material_places;
+  std::vector<Place> contact_places;  ///< of the entries behind the rules
   std::vector<Place> wall_places;
   bool contacts_complete = true;  ///< no entry was left out because of a mistake
   bool balls_complete = true;     ///< neither was a ball
@@ -51,6 +55,16 @@ void read_outputs(const Section& root, SceneDraft& draft);
 /// Index of the material that the key names; -1, after a report, if there is none, and -1 if the key is
 /// absent.
 std::int32_t read_material(const Section& section, std::string_view key, const model::Scene& scene);
+
+/// Stands for a parameter that the entry of `contacts` leaves to the materials, until take_from_materials.
+inline constexpr double left_to_materials = std::numeric_limits<double>::quiet_NaN();
+
+/// Pairs of materials that can meet, the smaller index first.
+std::set<std::pair<std::int32_t, std::int32_t>> meeting_pairs(const model::Scene& scene);
+
+/// Computes the parameters that entries of `contacts` leave to the materials: such a rule is replaced by one
+/// for each pair of materials that it holds for and that can meet.
+void take_from_materials(SceneDraft& draft, Diagnostics& diagnostics);
 
 /// What only the whole scene can tell: materials without density, pairs without a law.
 void check_scene(const Section& root, const SceneDraft& draft);

@@ -84,6 +84,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   root.check_keys();
   read_sections(root, draft, read_balls);
   check_scene(root, draft);
+  take_from_materials(draft, diagnostics);
   check_placement(root, draft);
   diagnostics.throw_if_any();
   add_notes(draft);
@@ -105,6 +106,7 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
     take_materials_of_balls(section, into, material_of_ball);
   });
   check_scene(root, draft);
+  take_from_materials(draft, diagnostics);
   diagnostics.throw_if_any();
   add_notes(draft);
   draft.scene.bodies = {};

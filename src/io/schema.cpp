@@ -39,6 +39,38 @@ std::vector<KeyDescription> own_keys() {
        .range = positive,
        .example = "2500 kg/m3",
        .description = "needed where balls use the material"},
+      {.path = "materials[].young",
+       .kind = quantity,
+       .unit = "Pa",
+       .range = positive,
+       .example = "70 GPa",
+       .description = "Young's modulus, for laws that compute their parameters from it"},
+      {.path = "materials[].poisson",
+       .kind = quantity,
+       .range = {.low = -1, .high = 0.5, .low_allowed = false},
+       .example = "0.3",
+       .description = "Poisson's ratio, beside `young`"},
+      {.path = "materials[].kn",
+       .kind = quantity,
+       .unit = "N/m",
+       .range = positive,
+       .example = "2e5 N/m",
+       .description =
+           "normal stiffness of one side of a contact, in series with that of the other, where the "
+           "entry of `contacts` leaves `kn` out"},
+      {.path = "materials[].ks",
+       .kind = quantity,
+       .unit = "N/m",
+       .range = {.low = 0},
+       .example = "1e5 N/m",
+       .description = "the same for `ks`"},
+      {.path = "materials[].rigid",
+       .kind = flag,
+       .fallback = "false",
+       .example = "true",
+       .description =
+           "does not give in a contact: only the other side does; stands for `young`, `poisson`, `kn` "
+           "and `ks`"},
 
       {.path = "contacts",
        .kind = section_list,
@@ -288,14 +320,15 @@ KeyDescription law_key(const contact::LawDescription& law, const contact::Parame
   key.law = law.name;
   key.unit = parameter.unit;
   key.description = parameter.description;
-  key.required = !parameter.default_value.has_value();
+  key.from_materials = parameter.of_material != nullptr ? parameter.material_keys : "";
+  key.required = !parameter.default_value.has_value() && parameter.of_material == nullptr;
   if (is_flag) {
     if (!key.required) key.fallback = *parameter.default_value != 0 ? "true" : "false";
     key.example = "true";
     return key;
   }
-  key.range = {.low = parameter.minimum, .low_allowed = parameter.minimum_allowed};
-  if (!key.required) key.fallback = fmt::format("{}", *parameter.default_value);
+  key.range = {.low = parameter.minimum, .high = parameter.maximum, .low_allowed = parameter.minimum_allowed};
+  if (parameter.default_value) key.fallback = fmt::format("{}", *parameter.default_value);
   const double valid = parameter.minimum > -infinity ? parameter.minimum + 1 : 1;
   key.example = key.unit.empty() ? fmt::format("{}", valid) : fmt::format("{} {}", valid, key.unit);
   return key;

@@ -51,7 +51,10 @@ std::string value_text(const KeyDescription& key) {
 }
 
 std::string table_row(const KeyDescription& key, std::string_view name) {
-  const std::string fallback = key.required ? "required" : in_code(key.fallback);
+  std::string fallback = key.required ? "required" : in_code(key.fallback);
+  if (!key.from_materials.empty())
+    fallback = fmt::format("{} of the materials, in series{}", key.from_materials,
+                           fallback.empty() ? "" : ", or " + fallback);
   return fmt::format("| `{}` | {} | {} | {} | {} |\n", name, value_text(key), fallback, in_code(key.example),
                      key.description);
 }
@@ -59,8 +62,21 @@ std::string table_row(const KeyDescription& key, std::string_view name) {
 constexpr std::string_view table_head =
     "| key | value | default | example | meaning |\n| --- | --- | --- | --- | --- |\n";
 
+/// Every law with its parameters, those with a default in brackets.
+std::string table_of_laws() {
+  std::string text = "\n| law | is | parameters |\n| --- | --- | --- |\n";
+  for (const contact::LawDescription& law : contact::law_descriptions()) {
+    std::string names;
+    for (const contact::ParameterDescription& parameter : law.parameters)
+      names += fmt::format(fmt::runtime(parameter.default_value ? "{}[`{}`]" : "{}`{}`"),
+                           names.empty() ? "" : " ", parameter.name);
+    text += fmt::format("| `{}` | {} | {} |\n", law.name, law.description, names);
+  }
+  return text;
+}
+
 std::string laws_markdown() {
-  std::string text;
+  std::string text = table_of_laws();
   for (const contact::LawDescription& law : contact::law_descriptions()) {
     text += fmt::format("\n### `law: {}`\n\n{}\n\n{}", law.name, law.description, table_head);
     for (const KeyDescription* key : section_keys("contacts[]", law.name))
@@ -89,7 +105,9 @@ at once. `--set key=value` on the command line acts as if the file said so: `--s
   text += table_head;
   for (const KeyDescription& key : scene_schema())
     if (key.law.empty()) text += table_row(key, key.path);
-  text += "\n## Contact laws\n\nThe parameters stand beside `law`, in the same entry of `contacts`.\n";
+  text +=
+      "\n## Contact laws\n\nThe parameters stand beside `law`, in the same entry of `contacts`; "
+      "those in brackets have defaults.\n";
   text += laws_markdown();
   text += "\n## Units\n\n";
   text +=

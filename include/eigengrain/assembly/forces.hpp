@@ -22,6 +22,7 @@ struct Trial {
   std::span<const Vec3> velocity;  ///< [bodies]
   std::span<const Vec3> spin;      ///< [bodies]; or empty: nothing turns
   double duration = 1;
+  double per_second = 0;  ///< 1/Δt of a step in time; 0: nothing moves in time, and dashpots do nothing
 
   contact::SideMotion side(std::int32_t body) const {
     const auto i = static_cast<std::size_t>(body);
@@ -35,7 +36,13 @@ contact::ContactMotion motion_in(const Law& law, const contact::Placement& place
                                  const contact::Pair& pair, const contact::ContactGeometry& geometry) {
   contact::SideMotion second;
   if constexpr (Kinematics::second_is_body) second = trial.side(pair.b);
-  return contact::motion_for<Kinematics>(law, placement, pair, geometry, trial.side(pair.a), second);
+  contact::ContactMotion motion =
+      contact::motion_for<Kinematics>(law, placement, pair, geometry, trial.side(pair.a), second);
+  if constexpr (contact::asks_rate<Law>) {
+    motion.velocity = trial.per_second * motion.displacement;
+    motion.reduced_mass = contact::reduced_mass<Kinematics>(placement, pair);
+  }
+  return motion;
 }
 
 /// What the contacts exert on every body: force (N) and moment about its centre (N m).
@@ -95,7 +102,8 @@ double elastic_energy(const Model& model, const Displacement& displacement);
 /// Elastic energy of all contacts of the model as it stands, J.
 double elastic_energy(const Model& model);
 
-/// Force of the bodies on each wall of the model as it stands [walls], N.
+/// Force of the bodies on each wall of the model as it stands [walls], N; with what dashpots did in the step
+/// that led there.
 std::vector<Vec3> wall_forces(const Model& model);
 
 }  // namespace eigengrain::assembly

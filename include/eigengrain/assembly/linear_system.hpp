@@ -9,12 +9,14 @@
 
 namespace eigengrain::assembly {
 
-/// K and M of a model as it stands, K factored into its contacts: what estimates, bounds and solvers are
-/// asked about. It owns what it holds; the model may go.
+/// K, M and dashpots of a model as it stands, factored into its contacts: what estimates, bounds and solvers
+/// are asked about. It owns what it holds; the model may go.
 struct LinearSystem {
   explicit LinearSystem(const Model& model, Listed which = Listed::acting);
 
   std::vector<contact::ContactElement> elements;
+  /// [elements] the dashpots of the elements; empty where no contact has any.
+  std::vector<contact::ContactDamping> damping;
   Unknowns unknowns;
   /// [unknowns.size()] the diagonal of M: mass for a u (kg), moment of inertia for a θ (kg m²). Masked
   /// components carry it too; it is never zero.
@@ -24,5 +26,9 @@ struct LinearSystem {
   /// gives the symmetric matrix whose eigenvalues are those of M⁻¹K on the free components (and zeros).
   std::vector<double> inverse_sqrt_mass() const;
 };
+
+/// The same system with K + μC in place of K, C the matrix of its dashpots: what decides how long the steps
+/// of the damped cycle may be (docs/theory.md). μ in 1/s.
+LinearSystem with_viscosity(const LinearSystem& system, double mu);
 
 }  // namespace eigengrain::assembly

@@ -20,7 +20,7 @@ struct Model {
   /// The sides of contacts with the bodies where they are, or at trial positions [bodies].
   contact::Placement placement() const { return placement(bodies.position); }
   contact::Placement placement(std::span<const Vec3> position) const {
-    return {position, bodies.radius, walls, cell};
+    return {position, bodies.radius, walls, cell, bodies.mass};
   }
 };
 

@@ -17,27 +17,42 @@ concept StiffnessSink = requires(S& sink, const contact::ContactElement& element
 /// Which of the listed contacts count: those that act now, or all, as if those that are near acted too.
 enum class Listed { acting, all };
 
-/// Hands the elastic stiffness of every contact to the sink, group after group, in the order of the contacts.
-/// Does not know what the sink fills. Cost O(contacts); nothing is allocated here.
-template <StiffnessSink Sink>
-void assemble_stiffness(const Model& model, Sink& sink, Listed which = Listed::acting) {
+/// Overlap over R* at which a contact that does not act yet is judged; only laws whose stiffness grows with
+/// the overlap depend on it.
+inline constexpr double typical_overlap = 1e-3;
+
+/// Calls visit(law, element) for every contact, group after group, in the order of the contacts. Cost
+/// O(contacts); nothing is allocated here.
+template <class Visit>
+void for_each_element(const Model& model, Listed which, const Visit& visit) {
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
-      const contact::ContactMotion motion = contact::at_rest(geometry);
-      if (which == Listed::acting && !group.law.acts(motion, group.states[c])) continue;
-      sink.add(contact::ContactElement{
-          .a = group.pairs[c].a,
-          .b = Kinematics::second_is_body ? group.pairs[c].b : contact::no_body,
-          .normal = geometry.normal,
-          .lever_a = geometry.lever_a,
-          .lever_b = geometry.lever_b,
-          .stiffness = group.law.stiffness(motion, group.states[c]),
-      });
+      contact::ContactMotion motion = contact::at_rest(geometry);
+      if (!group.law.acts(motion, group.states[c])) {
+        if (which == Listed::acting) continue;
+        motion.overlap = typical_overlap * motion.reduced_radius;
+      }
+      visit(group.law, contact::ContactElement{
+                           .a = group.pairs[c].a,
+                           .b = Kinematics::second_is_body ? group.pairs[c].b : contact::no_body,
+                           .normal = geometry.normal,
+                           .lever_a = geometry.lever_a,
+                           .lever_b = geometry.lever_b,
+                           .stiffness = group.law.stiffness(motion, group.states[c]),
+                       });
     }
   });
+}
+
+/// Hands the elastic stiffness of every contact to the sink, in the order of the contacts. Does not know what
+/// the sink fills.
+template <StiffnessSink Sink>
+void assemble_stiffness(const Model& model, Sink& sink, Listed which = Listed::acting) {
+  for_each_element(model, which,
+                   [&](const auto& /*law*/, const contact::ContactElement& element) { sink.add(element); });
 }
 
 /// The simplest sink: keeps the elements.

@@ -22,6 +22,14 @@ struct ContactElement {
   ContactStiffness stiffness;
 };
 
+/// The dashpots of a contact beside its springs: c = 2β√(m k).
+struct ContactDamping {
+  double beta_n = 0;
+  double beta_s = 0;
+  double normal = 0;  ///< c along n, N s/m
+  double shear = 0;   ///< c across n
+};
+
 /// K of a contact in 6×6 blocks on (u, θ) of its two ends; the block ba is the transpose of ab.
 struct ContactBlocks {
   Mat6 aa;

@@ -7,10 +7,11 @@ namespace eigengrain::contact {
 
 /// Where two sides touch (PFC3D eqs. 1.5-1.8).
 struct ContactGeometry {
-  Vec3 normal;     ///< n, unit, from the first side to the second
-  double overlap;  ///< U, m; positive when the surfaces interpenetrate
-  Vec3 lever_a;    ///< R_a = x_C - x_a, m
-  Vec3 lever_b;    ///< R_b = x_C - x_b, m; zero where the second side is a wall
+  Vec3 normal;            ///< n, unit, from the first side to the second
+  double overlap;         ///< U, m; positive when the surfaces interpenetrate
+  Vec3 lever_a;           ///< R_a = x_C - x_a, m
+  Vec3 lever_b;           ///< R_b = x_C - x_b, m; zero where the second side is a wall
+  double reduced_radius;  ///< R*, 1/R* = Σ 1/R, m; a wall is flat
 };
 
 /// Two balls: n = (x_b - x_a)/d, U = r_a + r_b - d, x_C = x_a + (r_a - U/2) n.
@@ -20,7 +21,7 @@ inline ContactGeometry ball_ball(const Vec3& x_a, double r_a, const Vec3& x_b, d
   const double distance = branch.norm();
   const Vec3 n = branch / distance;
   const double overlap = r_a + r_b - distance;
-  return {n, overlap, (r_a - 0.5 * overlap) * n, -(r_b - 0.5 * overlap) * n};
+  return {n, overlap, (r_a - 0.5 * overlap) * n, -(r_b - 0.5 * overlap) * n, r_a * r_b / (r_a + r_b)};
 }
 
 /// A ball and a one-sided plane: n = -(normal of the plane), d the signed distance of the centre from it,
@@ -28,7 +29,7 @@ inline ContactGeometry ball_ball(const Vec3& x_a, double r_a, const Vec3& x_b, d
 inline ContactGeometry ball_plane(const Vec3& x, double r, const model::Plane& plane) {
   const Vec3 n = -plane.normal;
   const double overlap = r - (x - plane.point).dot(plane.normal);
-  return {n, overlap, (r - 0.5 * overlap) * n, Vec3::Zero()};
+  return {n, overlap, (r - 0.5 * overlap) * n, Vec3::Zero(), r};
 }
 
 }  // namespace eigengrain::contact

@@ -27,6 +27,7 @@ struct Placement {
   std::span<const double> radius;  ///< [bodies] m
   std::span<const model::Plane> walls;
   const model::PeriodicCell& cell;
+  std::span<const double> mass{};  ///< [bodies] kg; for laws that ask for the rate
 };
 
 /// Side a is a ball, side b another ball (or an image of the same one).
@@ -85,14 +86,15 @@ inline ContactMotion contact_motion(const ContactGeometry& geometry, const SideM
           .displacement = (b.translation + b.rotation.cross(geometry.lever_b)) -
                           (a.translation + a.rotation.cross(geometry.lever_a)),
           .rotation = b.rotation - a.rotation,
-          .spin = 0.5 * (a.rotation + b.rotation).dot(geometry.normal)};
+          .spin = 0.5 * (a.rotation + b.rotation).dot(geometry.normal),
+          .reduced_radius = geometry.reduced_radius};
 }
 
 /// The same with n and the levers of the middle of the step, in which a rigid motion makes no spurious
 /// increment: of size θ³ for a rotation by θ instead of θ² (docs/theory.md). What was found there is carried
-/// on to the end of the step, with the contact plane and, for δ, by the second half of the spin about n: left
-/// where it was, it would err by Δt² a step, and the cycle would be of first order. Laws may take all parts
-/// along the present n.
+/// on to the end of the step, with the contact plane and by the second half of the spin about n: left where
+/// it was, it would err by Δt² a step, and the cycle would be of first order. Laws may take all parts along
+/// the present n.
 template <class Kinematics>
 ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, const ContactGeometry& geometry,
                               const SideMotion& a, const SideMotion& b) {
@@ -102,9 +104,11 @@ ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, cons
   ContactMotion motion = contact_motion(middle, a, b);
   motion.normal = n;
   motion.overlap = geometry.overlap;
+  motion.reduced_radius = geometry.reduced_radius;
   motion.displacement = rotate_onto(motion.displacement, middle.normal, n);
   motion.rotation = rotate_onto(motion.rotation, middle.normal, n);
   motion.displacement += 0.5 * motion.spin * n.cross(motion.displacement);
+  motion.rotation += 0.5 * motion.spin * n.cross(motion.rotation);
   return motion;
 }
 
@@ -114,6 +118,17 @@ ContactMotion motion_for(const Law& law, const Placement& placement, const Pair&
                          const ContactGeometry& geometry, const SideMotion& a, const SideMotion& b) {
   return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
                         : contact_motion(geometry, a, b);
+}
+
+/// m_1 m_2/(m_1 + m_2) of the sides, at a wall the ball's mass, kg.
+template <class Kinematics>
+double reduced_mass(const Placement& placement, const Pair& pair) {
+  const double a = placement.mass[static_cast<std::size_t>(pair.a)];
+  if constexpr (Kinematics::second_is_body) {
+    const double b = placement.mass[static_cast<std::size_t>(pair.b)];
+    return a * b / (a + b);
+  }
+  return a;
 }
 
 /// What a contact does to its ends: force (N) and moment about the centre (N m) on each.
@@ -135,6 +150,16 @@ inline EndForces end_forces(const ContactGeometry& geometry, const ContactForce&
 /// The motion of a contact that stands still.
 inline ContactMotion at_rest(const ContactGeometry& geometry) {
   return contact_motion(geometry, {}, {});
+}
+
+/// The force of a contact as it stands: that of its springs, and that of its dashpots in the step that led to
+/// its state.
+template <class Law>
+ContactForce force_now(const Law& law, const ContactGeometry& geometry, const typename Law::State& state) {
+  typename Law::State discarded;
+  ContactForce force = law.evaluate(at_rest(geometry), state, discarded);
+  if constexpr (asks_rate<Law>) force.force += state.viscous;
+  return force;
 }
 
 }  // namespace eigengrain::contact

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "eigengrain/base/vec.hpp"
+#include "eigengrain/model/material.hpp"
 
+#include <algorithm>
+#include <array>
 #include <concepts>
 #include <limits>
 #include <optional>
@@ -27,6 +30,10 @@ struct ContactMotion {
       Vec3::Zero();              ///< increment of the relative displacement δ since the committed state, m
   Vec3 rotation = Vec3::Zero();  ///< increment of the relative rotation φ, rad
   double spin = 0;               ///< increment of the mean rotation ½(θ_1 + θ_2) about n, rad
+  double reduced_radius = 0;     ///< R* of the sides, 1/R* = Σ 1/R, m; a wall is flat
+  /// For laws that ask for the rate (asks_rate) alone.
+  Vec3 velocity = Vec3::Zero();  ///< of δ, m/s; zero where nothing moves in time, as in Newton's method
+  double reduced_mass = 0;       ///< m_1 m_2/(m_1 + m_2), at a wall the ball's, kg
 };
 
 /// What acts at the contact point, of the first side on the second.
@@ -53,10 +60,19 @@ struct ContactStiffness {
   }
 };
 
-/// Consistent derivative of the force law on its present branch, -dF/dδ and -dM/dφ at fixed n.
+/// Damping ratios β of the dashpots of a contact: c = 2β√(m k), m the reduced mass and k the stiffness along
+/// n and across it (PFC3D eqs. 1.57-1.60).
+struct DampingRatios {
+  double normal = 0;
+  double shear = 0;
+};
+
+/// Consistent derivative of the force law on its present branch, at rest and at fixed n: -dF/dδ, -dM/dφ and
+/// -dM/dδ.
 struct ContactTangent {
   Mat3 translation = Mat3::Zero();  ///< N/m; unsymmetric while the contact slips
   Mat3 rotation = Mat3::Zero();     ///< N m
+  Mat3 coupling = Mat3::Zero();     ///< N; of a moment whose limit follows the normal force
 };
 
 /// One parameter of a law, as scene files and their documentation see it.
@@ -69,8 +85,30 @@ struct ParameterDescription {
   std::optional<double> default_value{};  ///< none: the scene must give it. Flags are 0 or 1
   double minimum = -std::numeric_limits<double>::infinity();
   bool minimum_allowed = true;  ///< whether the minimum itself is a valid value
+  double maximum = std::numeric_limits<double>::infinity();
   std::string_view description;
+  /// Where a rule may leave the parameter out: the stiffness of one side, from its material; the pair has
+  /// both in series, 1/(1/a + 1/b). Nothing where the material does not say.
+  std::optional<double> (*of_material)(const model::Material&) = nullptr;
+  std::string_view material_keys{};  ///< what it is computed from, for messages: "young and poisson"
 };
+
+/// The entries of two lists, one after the other.
+template <class T, std::size_t n, std::size_t m>
+constexpr std::array<T, n + m> joined(const std::array<T, n>& first, const std::array<T, m>& second) {
+  std::array<T, n + m> all{};
+  std::copy(first.begin(), first.end(), all.begin());
+  std::copy(second.begin(), second.end(), all.begin() + n);
+  return all;
+}
+
+/// Whether all values from the place `first` on are the defaults of their parameters.
+constexpr bool are_defaults(std::span<const double> values, std::span<const ParameterDescription> parameters,
+                            std::size_t first) {
+  for (std::size_t k = first; k < values.size(); ++k)
+    if (values[k] != parameters[k].default_value) return false;
+  return true;
+}
 
 /// One part of a law's state, as files see it. A state is plain doubles, part after part.
 struct StateField {
@@ -85,6 +123,13 @@ constexpr std::size_t state_numbers(std::span<const StateField> fields) {
   for (const StateField& field : fields) count += static_cast<std::size_t>(field.components);
   return count;
 }
+
+/// Whether a law wants velocity and reduced mass in its ContactMotion: it then says `static constexpr bool
+/// asks_rate = true`, offers damping(), and keeps the force of its dashpots as `viscous` in its state.
+template <class L>
+inline constexpr bool asks_rate = requires {
+  requires L::asks_rate;
+};
 
 /// A law: a state that belongs to each contact (may be empty) and pure functions of motion and old state.
 template <class L>

@@ -3,6 +3,7 @@
 #include "eigengrain/contact/law.hpp"
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct LawDescription {
   std::string_view name;
   std::string_view description;
   std::span<const ParameterDescription> parameters;
+  /// What is wrong with values that are each in range, in the order of the parameters; empty: nothing. Null
+  /// where any values go together.
+  std::string (*mistake)(std::span<const double> values) = nullptr;
 };
 
 /// Every law that exists, in the order of the table in law_table.cpp.

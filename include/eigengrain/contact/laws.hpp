@@ -1,6 +1,8 @@
 #pragma once
 
 #include "eigengrain/base/type_list.hpp"
+#include "eigengrain/contact/laws/hertz.hpp"
+#include "eigengrain/contact/laws/hysteretic.hpp"
 #include "eigengrain/contact/laws/linear.hpp"
 #include "eigengrain/contact/laws/linear_frictionless.hpp"
 
@@ -11,7 +13,8 @@ namespace eigengrain::contact {
 /// documentation pick it up from its description.
 ///
 /// Of several types with one name, the first whose serves(parameters) holds is taken: that is how a scene
-/// without friction gets contacts without history.
-using LawTypes = TypeList<LinearFrictionless, Linear>;
+/// without friction gets contacts without history, and one without dashpots contacts that know none.
+using LawTypes =
+    TypeList<LinearFrictionless, Linear, DampedLinear, RollingLinear, Hertz, RollingHertz, Hysteretic>;
 
 }  // namespace eigengrain::contact

@@ -42,7 +42,21 @@ inline Vec3 carry_shear(const Vec3& shear, const Vec3& n_old, const Vec3& n, dou
   return turn.cosine * tilted + turn.sine * n.cross(tilted);
 }
 
-/// The same by PFC3D's small-angle forms (eqs. 1.11-1.12): per step of angle θ, |shear| grows by up to ½θ²
+/// Any vector carried with the contact frame: its part along n_old goes with the normal, the rest as a shear
+/// force does.
+inline Vec3 carry_vector(const Vec3& v, const Vec3& n_old, const Vec3& n, double spin) {
+  const Vec3 tilted = rotate_onto(v, n_old, n);
+  const Turn turn(spin);
+  return turn.cosine * tilted + turn.sine * n.cross(tilted) + (1.0 - turn.cosine) * n.dot(tilted) * n;
+}
+
+/// Shear force projected onto the new contact plane, which shortens it by up to ½θ² a step of angle θ and
+/// knows no spin about n.
+inline Vec3 project_shear(const Vec3& shear, const Vec3& n) {
+  return shear - shear.dot(n) * n;
+}
+
+/// carry_shear by PFC3D's small-angle forms (eqs. 1.11-1.12): per step of angle θ, |shear| grows by up to ½θ²
 /// and tangency errs by up to ½θ³.
 inline Vec3 carry_shear_small_angle(const Vec3& shear, const Vec3& n_old, const Vec3& n, double spin) {
   const Vec3 tilted = shear - shear.cross(n_old.cross(n));

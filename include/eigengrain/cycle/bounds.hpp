@@ -6,8 +6,8 @@
 #include <vector>
 
 /// Cheap estimates of the critical timestep: sums over the contacts of each body, no eigenvalue of the
-/// system. All are for the undamped system and before any safety factor; where nothing moves they are
-/// infinite.
+/// system. All are before any safety factor, and for the system without local damping where they do not take
+/// it; where nothing moves they are infinite.
 namespace eigengrain::cycle {
 
 /// Largest stable step of the cycle with local damping α, from that of the undamped cycle (or a bound of it):
@@ -16,8 +16,9 @@ namespace eigengrain::cycle {
 double damped_timestep(double undamped_dt, double local_damping);
 
 /// PFC3D's estimate (eq. 1.31): min over bodies and degrees of freedom of √(m/k), k the sum over the body's
-/// contacts of the diagonal terms of their stiffness matrices. Depends on the frame and is NOT a bound: up to
-/// 22% above the true critical step for two spheres, up to √3 in principle. s.
+/// contacts of the diagonal terms of their stiffness matrices; with dashpots, of k/F(β)², F(β) = √(1 + β²) -
+/// β (eq. 1.35). Depends on the frame and is NOT a bound: up to 22% above the true critical step for two
+/// spheres, up to √3 in principle. s.
 double diagonal_estimate(const assembly::LinearSystem& system);
 
 /// A proven lower bound of the true critical step, for any positive weights d of the bodies (docs/theory.md):
@@ -52,5 +53,10 @@ double block_bound(const assembly::LinearSystem& system);
 
 /// BlockBound after some sweeps, s. Three prove 0.93-0.96 of the true step in dense packings.
 double scaled_block_bound(const assembly::LinearSystem& system, int sweeps = 3);
+
+/// A proven lower bound of the largest stable step of the cycle with local damping α and dashpots,
+/// Δt = 2/μ, s: μ is such that μ² M/(1 + α) - μ C - K is positive definite, by the scaled block bound of
+/// (1 + α) M⁻¹(K + μC) (docs/theory.md). Without dashpots it is damped_timestep(scaled_block_bound).
+double damped_block_bound(const assembly::LinearSystem& system, double local_damping, int sweeps = 3);
 
 }  // namespace eigengrain::cycle

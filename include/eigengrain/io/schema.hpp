@@ -46,7 +46,8 @@ struct KeyDescription {
   std::vector<std::string> words{};  ///< of a word or words
   std::string example{};             ///< a valid value
   std::string description{};
-  std::string law{};  ///< the contact law whose parameter it is; empty for all other keys
+  std::string from_materials{};  ///< keys of materials that say it where it is left out
+  std::string law{};             ///< the contact law whose parameter it is; empty for all other keys
 
   /// The last part of the path.
   std::string_view name() const;

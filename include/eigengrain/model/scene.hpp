@@ -2,6 +2,7 @@
 
 #include "eigengrain/base/vec.hpp"
 #include "eigengrain/model/bodies.hpp"
+#include "eigengrain/model/material.hpp"
 #include "eigengrain/model/surroundings.hpp"
 
 #include <cstdint>
@@ -12,11 +13,6 @@
 /// A scene is data: what the user asked for, in SI units, checked but not yet built.
 namespace eigengrain::model {
 
-struct Material {
-  std::string name;
-  double density = 0;  ///< kg/m³; 0 for a material that only walls are made of
-};
-
 /// The law between two materials. An index of any_material matches every material.
 struct ContactRule {
   static constexpr std::int32_t any_material = -1;
@@ -24,7 +20,10 @@ struct ContactRule {
   std::int32_t first = any_material;   ///< index into Scene::materials
   std::int32_t second = any_material;  ///< index into Scene::materials
   std::string law;                     ///< a name of the law table (contact/law_table.hpp), or "none"
-  std::vector<double> parameters;      ///< in the order of the law's own description; flags as 0 or 1
+  /// In the order of the law's own description; flags as 0 or 1. Those at the end that have defaults may be
+  /// left out.
+  std::vector<double> parameters;
+  std::int32_t entry = 0;  ///< of the scene file's `contacts`, for reports
 
   bool matches(std::int32_t a, std::int32_t b) const {
     const auto fits = [](std::int32_t mine, std::int32_t other) {

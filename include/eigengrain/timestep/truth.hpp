@@ -14,8 +14,10 @@ struct TruthOptions {
 };
 
 struct Truth {
-  double dt = 0;           ///< 2/√λ_max, undamped, s; infinite where nothing resists
-  double limit = 0;        ///< of the cycle with the local damping in use, s
+  double dt = 0;  ///< 2/√λ_max, undamped, s; infinite where nothing resists
+  /// Of the cycle with the local damping in use, s; with dashpots a proven bound of it
+  /// (cycle::damped_block_bound).
+  double limit = 0;
   double lambda_max = 0;   ///< largest eigenvalue of M⁻¹K, s⁻²
   double residual = 0;     ///< |A x - λ x| / |λ x| of the symmetric form A = M^-½ K M^-½
   bool certified = false;  ///< whether λ_max is proven; an eigenpair with its residual proves that λ is an

@@ -20,7 +20,7 @@ class LinearFrictionless {
 
   static bool serves(std::span<const double> values) {
     const Linear general = Linear::from_values(values);
-    return !general.needs_rotation() && !general.tension();
+    return Linear::serves(values) && !general.needs_rotation() && !general.tension();
   }
   static LinearFrictionless from_values(std::span<const double> values) {
     return LinearFrictionless(values[0]);

@@ -1,0 +1,227 @@
+#pragma once
+
+#include "eigengrain/contact/law.hpp"
+#include "eigengrain/contact/shear_transport.hpp"
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace eigengrain::contact {
+
+/// Springs across n at the present overlap, and what becomes of the old shear force:
+/// F_s <- kept · carried(F_s) - k_s δ_s.
+struct ShearSprings {
+  double stiffness = 0;        ///< k_s, N/m
+  double stiffness_slope = 0;  ///< dk_s/dU, N/m²
+  double kept = 1;
+  double kept_slope = 0;  ///< d kept/dU, 1/m
+};
+
+/// What a law found while it computed its force; laws built on it go on from there.
+struct Response {
+  ContactForce force;
+  double normal_force = 0;  ///< F_n of the springs, N
+  bool slides = false;
+};
+
+/// Springs with Coulomb slip (PFC3D eqs. 1.9-1.19), for any springs along n:
+///
+///   normal, secant       F_n(U)                              while U > 0
+///   shear, incremental   F_s <- kept · carried(F_s) - k_s δ_s      δ_s = the part of δ across n
+///   slip                 |F_s| <= μ F_n
+///   energy               normal energy + ½ |F_s|²/k_s
+///
+/// F_s starts at zero when the contact forms. k_s counts only where friction is positive.
+///
+/// Springs say what F_n, k_s and the energy are (laws/linear.hpp, hertz.hpp, hysteretic.hpp): Params with
+/// `friction`, `small_angle`, `end_step` and `projected`; Memory, what they remember beside the shear force;
+/// and the functions used here, of the motion and the old memory.
+template <class Springs>
+class Frictional {
+ public:
+  using Params = typename Springs::Params;
+
+  struct State {
+    Vec3 shear = Vec3::Zero();   ///< F_s, N, of the first side on the second
+    Vec3 normal = Vec3::Zero();  ///< n at the committed state; zero: the contact has not formed
+    [[no_unique_address]] typename Springs::Memory memory{};
+
+    bool formed() const { return !normal.isZero(0); }
+  };
+  static constexpr auto state_fields =
+      joined(std::array<StateField, 2>{{{.name = "shear_force", .unit = "N", .components = 3},
+                                        {.name = "normal", .unit = "", .components = 3}}},
+             Springs::Memory::fields);
+
+  explicit Frictional(const Params& params)
+      : springs_(params),
+        friction_(params.friction),
+        transport_(params.projected     ? Transport::projected
+                   : params.small_angle ? Transport::small_angle
+                                        : Transport::rotated),
+        end_step_(params.end_step) {}
+
+  bool tension() const { return springs_.tension(); }
+  bool needs_rotation() const { return springs_.has_shear(); }
+  /// Without shear nothing depends on the increments.
+  bool mid_step() const { return springs_.has_shear() && !end_step_; }
+
+  bool end_step() const { return end_step_; }
+
+  /// The state of a contact that forms with normal n.
+  State formed(const Vec3& n) const { return {.normal = n}; }
+
+  bool acts(const ContactMotion& motion, const State& old) const {
+    return motion.overlap > 0 || (springs_.tension() && old.formed());
+  }
+
+  Response respond(const ContactMotion& motion, const State& old, State& next) const {
+    if (!acts(motion, old)) {
+      next = State{};
+      return {};
+    }
+    const double normal_force = springs_.force(motion, old.memory);
+    next = formed(motion.normal);
+    next.memory = springs_.remembered(motion, old.memory);
+    next.shear = trial_shear(motion, old);
+    const bool sliding = slips(next.shear, normal_force);
+    if (sliding) next.shear *= friction_ * normal_force / next.shear.norm();
+    return {.force = {.force = normal_force * motion.normal + next.shear},
+            .normal_force = normal_force,
+            .slides = sliding};
+  }
+
+  ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
+    return respond(motion, old, next).force;
+  }
+
+  /// Elastic: sticking, whatever the contact does now.
+  ContactStiffness stiffness(const ContactMotion& motion, const State& old) const {
+    return springs_.stiffness(motion, old.memory);
+  }
+
+  /// With k_n = dF_n/dU, T the trial shear force and g = dT/dU. Sticking: k_n nnᵀ + k_s (1 - nnᵀ) + g nᵀ.
+  /// Slipping, with t = T/|T|:
+  /// k_n (n + μ t) nᵀ + (μ F_n/|T|) (1 - nnᵀ - ttᵀ) (k_s + g nᵀ).
+  ContactTangent tangent(const ContactMotion& motion, const State& old) const {
+    const Vec3& n = motion.normal;
+    const double normal_force = springs_.force(motion, old.memory);
+    const double kn = springs_.tangent(motion, old.memory);
+    const double ks = springs_.shear(motion, old.memory).stiffness;
+    const Vec3 trial = trial_shear(motion, old);
+    const Vec3 growth = trial_growth(motion, old);
+    if (!slips(trial, normal_force)) {
+      const ContactStiffness sticking{.normal = kn, .shear = ks};
+      return {.translation = sticking.translation(n) + growth * n.transpose()};
+    }
+    const double magnitude = trial.norm();
+    const Vec3 t = trial / magnitude;
+    const double across = friction_ * normal_force / magnitude;
+    const Mat3 plane = Mat3::Identity() - n * n.transpose() - t * t.transpose();
+    return {.translation = kn * (n + friction_ * t) * n.transpose() +
+                           across * (ks * plane + plane * growth * n.transpose())};
+  }
+
+  double energy(const ContactMotion& motion, const State& old) const {
+    if (!acts(motion, old)) return 0.0;
+    State next;
+    respond(motion, old, next);
+    const double normal = springs_.energy(motion, old.memory);
+    if (!springs_.has_shear()) return normal;
+    return normal + 0.5 * next.shear.squaredNorm() / springs_.shear(motion, old.memory).stiffness;
+  }
+
+  // What scene files say.
+
+  static constexpr std::string_view name = Springs::name;
+  static constexpr std::string_view description = Springs::description;
+  static constexpr auto& parameters = Springs::parameters;
+  /// How many parameters are its own; those behind them belong to laws built on it.
+  static constexpr std::size_t own_parameters = Springs::own_parameters.size();
+
+  /// Whether this class is the one for these parameters: nothing is asked that laws built on it offer.
+  static bool serves(std::span<const double> values) {
+    return are_defaults(values, parameters, own_parameters);
+  }
+  static Frictional from_values(std::span<const double> values) {
+    return Frictional(Springs::params(values));
+  }
+  /// What is wrong with values that are each in range; empty: nothing.
+  static std::string mistake(std::span<const double> values) {
+    const Params params = Springs::params(values);
+    if (params.small_angle && params.projected)
+      return "small_angle and projected are two ways to carry the shear force; keep one of the two";
+    return {};
+  }
+  static double damping_ratio(double restitution) { return Springs::damping_ratio(restitution); }
+
+ private:
+  enum class Transport { rotated, small_angle, projected };
+
+  /// F_s carried from the committed state to the present contact plane.
+  Vec3 carried(const ContactMotion& motion, const State& old) const {
+    if (transport_ == Transport::rotated)
+      return carry_shear(old.shear, old.normal, motion.normal, motion.spin);
+    if (transport_ == Transport::projected) return project_shear(old.shear, motion.normal);
+    return carry_shear_small_angle(old.shear, old.normal, motion.normal, motion.spin);
+  }
+  static Vec3 across(const ContactMotion& motion) {
+    return motion.displacement - motion.displacement.dot(motion.normal) * motion.normal;
+  }
+
+  /// Shear force before the slip check. Zero in the step in which the contact forms.
+  Vec3 trial_shear(const ContactMotion& motion, const State& old) const {
+    if (!springs_.has_shear() || !old.formed()) return Vec3::Zero();
+    const ShearSprings shear = springs_.shear(motion, old.memory);
+    return shear.kept * carried(motion, old) - shear.stiffness * across(motion);
+  }
+  /// Its derivative with respect to U.
+  Vec3 trial_growth(const ContactMotion& motion, const State& old) const {
+    if (!springs_.has_shear() || !old.formed()) return Vec3::Zero();
+    const ShearSprings shear = springs_.shear(motion, old.memory);
+    return shear.kept_slope * carried(motion, old) - shear.stiffness_slope * across(motion);
+  }
+
+  bool slips(const Vec3& shear, double normal_force) const {
+    if (springs_.tension()) return false;
+    const double limit = friction_ * normal_force;
+    return shear.squaredNorm() > limit * limit;
+  }
+
+  Springs springs_;
+  double friction_;
+  Transport transport_;
+  bool end_step_;
+};
+
+/// Parameters that laws with friction share.
+inline constexpr ParameterDescription friction_parameter{
+    .name = "friction", .unit = "", .default_value = 0, .minimum = 0, .description = "coefficient μ"};
+inline constexpr ParameterDescription small_angle_parameter{
+    .name = "small_angle",
+    .kind = ParameterDescription::Kind::flag,
+    .unit = "",
+    .default_value = 0,
+    .description =
+        "carry the shear force by the small-angle forms of eqs. 1.11-1.12, not by exact rotations"};
+inline constexpr ParameterDescription end_step_parameter{
+    .name = "end_step",
+    .kind = ParameterDescription::Kind::flag,
+    .unit = "",
+    .default_value = 0,
+    .description =
+        "measure shear increments with the geometry at the end of the step, as PFC3D does, not "
+        "of its middle"};
+
+inline constexpr ParameterDescription projected_parameter{
+    .name = "projected",
+    .kind = ParameterDescription::Kind::flag,
+    .unit = "",
+    .default_value = 0,
+    .description =
+        "project the shear force onto the new contact plane, as LAMMPS's gran/hooke/history does, "
+        "in place of turning it"};
+
+}  // namespace eigengrain::contact

@@ -1,0 +1,146 @@
+#pragma once
+
+#include "eigengrain/contact/laws/damped.hpp"
+#include "eigengrain/contact/laws/frictional.hpp"
+#include "eigengrain/contact/laws/rolling.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace eigengrain::contact {
+namespace detail {
+
+/// What one side of a Hertz contact adds in series: infinite for a rigid one.
+template <class Modulus>
+std::optional<double> elastic_side(const model::Material& material, const Modulus& modulus) {
+  if (material.rigid) return std::numeric_limits<double>::infinity();
+  if (!material.young || !material.poisson) return std::nullopt;
+  return modulus(*material.young, *material.poisson);
+}
+
+}  // namespace detail
+
+/// Hertz's contact of elastic spheres, with Mindlin's initial shear stiffness, incremental:
+///
+///   F_n = 4/3 E* √R* U^(3/2)      k_n = 2 E* √(R* U)      k_s = 8 G* √(R* U)
+///   1/E* = Σ (1 - ν²)/E           1/G* = Σ (2 - ν)/G      G = E/2(1 + ν)
+///
+/// On unloading the shear force is first rescaled by k_s/k_s,old: at fixed F_s the energy ½ F_s²/k_s would
+/// rise as k_s falls, and a contact sheared at a large overlap and released at a small one would give more
+/// than it took (Elata and Berryman, Mech. Mater. 24:229, 1996). The normal energy is 8/15 E* √R* U^(5/2).
+/// The shear part is a potential at constant overlap; where the overlap changes under shear the law
+/// dissipates, both ways. For overlaps small against R*.
+class HertzSprings {
+ public:
+  struct Params {
+    double effective_young = 0;  ///< E*, Pa
+    double effective_shear = 0;  ///< G*, Pa
+    double friction = 0;         ///< μ
+    bool small_angle = false;
+    bool end_step = false;
+    bool projected = false;
+  };
+  struct Memory {
+    double overlap = 0;  ///< U at the committed state, m
+    static constexpr std::array<StateField, 1> fields{{{.name = "overlap", .unit = "m"}}};
+  };
+
+  explicit HertzSprings(const Params& params)
+      : young_(params.effective_young), shear_(params.friction > 0 ? params.effective_shear : 0.0) {}
+
+  static constexpr bool tension() { return false; }
+  bool has_shear() const { return shear_ > 0; }
+
+  double force(const ContactMotion& motion, Memory old) const {
+    return 2.0 / 3.0 * motion.overlap * tangent(motion, old);
+  }
+  double tangent(const ContactMotion& motion, Memory /*old*/) const { return 2 * young_ * root(motion); }
+  ShearSprings shear(const ContactMotion& motion, Memory old) const {
+    ShearSprings springs{.stiffness = 8 * shear_ * root(motion)};
+    springs.stiffness_slope = springs.stiffness / (2 * motion.overlap);
+    if (motion.overlap < old.overlap) {
+      springs.kept = std::sqrt(motion.overlap / old.overlap);
+      springs.kept_slope = springs.kept / (2 * motion.overlap);
+    }
+    return springs;
+  }
+  ContactStiffness stiffness(const ContactMotion& motion, Memory old) const {
+    return {.normal = tangent(motion, old), .shear = 8 * shear_ * root(motion)};
+  }
+  double energy(const ContactMotion& motion, Memory old) const {
+    return 0.4 * motion.overlap * force(motion, old);
+  }
+  Memory remembered(const ContactMotion& motion, Memory /*old*/) const { return {motion.overlap}; }
+
+  /// β of the dashpot along n after which an impact leaves the part e of its velocity, where the dashpot may
+  /// pull: with c = 2β√(m k_n), e = exp(-πb/√(1 - b²)), b = β√(6/5) (Tsuji et al., Powder Technol. 71:239,
+  /// 1992, in closed form).
+  static double damping_ratio(double restitution) {
+    const double b = -std::log(restitution);
+    return b / std::hypot(std::numbers::pi, b) / std::sqrt(1.2);
+  }
+
+  static constexpr std::string_view name = "hertz";
+  static constexpr std::string_view description =
+      "Hertz's normal force with Mindlin's shear stiffness and Coulomb slip; dashpots and rolling resistance "
+      "on "
+      "demand";
+  static constexpr std::array<ParameterDescription, 6> own_parameters{{
+      {.name = "effective_young",
+       .unit = "Pa",
+       .minimum = 0,
+       .minimum_allowed = false,
+       .description = "E* of the pair, 1/E* = sum of (1 - nu^2)/E",
+       .of_material =
+           [](const model::Material& m) {
+             return detail::elastic_side(m, [](double young, double nu) { return young / (1 - nu * nu); });
+           },
+       .material_keys = "young and poisson"},
+      {.name = "effective_shear",
+       .unit = "Pa",
+       .minimum = 0,
+       .description =
+           "G* of the pair, 1/G* = sum of (2 - nu)/G, G = E/2(1 + nu); counts only where friction is "
+           "positive",
+       .of_material =
+           [](const model::Material& m) {
+             return detail::elastic_side(
+                 m, [](double young, double nu) { return young / (2 * (1 + nu) * (2 - nu)); });
+           },
+       .material_keys = "young and poisson"},
+      friction_parameter,
+      small_angle_parameter,
+      end_step_parameter,
+      projected_parameter,
+  }};
+  static constexpr auto parameters =
+      joined(joined(own_parameters, Dashpots::parameters), RollingSpring::parameters);
+
+  static Params params(std::span<const double> values) {
+    return {.effective_young = values[0],
+            .effective_shear = values[1],
+            .friction = values[2],
+            .small_angle = values[3] != 0,
+            .end_step = values[4] != 0,
+            .projected = values[5] != 0};
+  }
+
+ private:
+  static double root(const ContactMotion& motion) {
+    return std::sqrt(motion.reduced_radius * motion.overlap);
+  }
+
+  double young_;  // E*, Pa
+  double shear_;  // G*, Pa
+};
+
+/// One class for Hertz's contacts with dashpots or without: beside the roots of the law dashpots cost little.
+using Hertz = Damped<Frictional<HertzSprings>>;
+using RollingHertz = Rolling<Hertz>;
+
+}  // namespace eigengrain::contact

@@ -1,0 +1,114 @@
+#pragma once
+
+#include "eigengrain/contact/laws/frictional.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
+
+namespace eigengrain::contact {
+
+/// Linear loading and stiffer linear unloading (Walton and Braun, J. Rheol. 30:949, 1986): a contact that
+/// yields as it is pressed together and springs back along a steeper line,
+///
+///   loading, U at its largest    F_n = k_1 U
+///   below the largest U_m        F_n = max(0, k_2 (U - U_0)),  U_0 = (1 - k_1/k_2) U_m
+///
+/// so that a head-on impact without other losses has the restitution e = √(k_1/k_2) at any velocity. What is
+/// stored is ½ F_n²/k_2; the rest of the work of loading is lost. An open contact forgets its largest
+/// overlap. The elastic stiffness (timestep, modes) is that of unloading.
+class HystereticSprings {
+ public:
+  struct Params {
+    double kn = 0;           ///< k_1, N/m
+    double restitution = 1;  ///< e
+    double ks = 0;           ///< N/m
+    double friction = 0;     ///< μ
+    bool small_angle = false;
+    bool end_step = false;
+    bool projected = false;
+  };
+  struct Memory {
+    double largest = 0;  ///< U_m at the committed state, m
+    static constexpr std::array<StateField, 1> fields{{{.name = "largest_overlap", .unit = "m"}}};
+  };
+
+  explicit HystereticSprings(const Params& params)
+      : loading_(params.kn),
+        unloading_(params.kn / (params.restitution * params.restitution)),
+        ks_(params.friction > 0 ? params.ks : 0.0) {}
+
+  static constexpr bool tension() { return false; }
+  bool has_shear() const { return ks_ > 0; }
+
+  double force(const ContactMotion& motion, Memory old) const {
+    if (motion.overlap >= old.largest) return loading_ * motion.overlap;
+    return std::max(0.0, loading_ * old.largest - unloading_ * (old.largest - motion.overlap));
+  }
+  double tangent(const ContactMotion& motion, Memory old) const {
+    if (motion.overlap >= old.largest) return loading_;
+    return force(motion, old) > 0 ? unloading_ : 0.0;
+  }
+  ShearSprings shear(const ContactMotion& /*motion*/, Memory /*old*/) const { return {.stiffness = ks_}; }
+  ContactStiffness stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const {
+    return {.normal = unloading_, .shear = ks_};
+  }
+  double energy(const ContactMotion& motion, Memory old) const {
+    const double f = force(motion, old);
+    return 0.5 * f * f / unloading_;
+  }
+  Memory remembered(const ContactMotion& motion, Memory old) const {
+    return {std::max(motion.overlap, old.largest)};
+  }
+
+  static constexpr std::string_view name = "hysteretic";
+  static constexpr std::string_view description =
+      "a linear spring that unloads along a steeper line, for impacts of a given restitution; linear shear "
+      "spring "
+      "with Coulomb slip";
+  static constexpr std::array<ParameterDescription, 7> own_parameters{{
+      {.name = "kn",
+       .unit = "N/m",
+       .minimum = 0,
+       .minimum_allowed = false,
+       .description = "normal stiffness of the pair while it is loaded"},
+      {.name = "restitution",
+       .unit = "",
+       .minimum = 0,
+       .minimum_allowed = false,
+       .maximum = 1,
+       .description =
+           "the part of the normal velocity that a head-on impact leaves; unloading has the stiffness "
+           "kn/restitution^2"},
+      {.name = "ks",
+       .unit = "N/m",
+       .default_value = 0,
+       .minimum = 0,
+       .description = "shear stiffness of the pair; counts only where friction is positive"},
+      friction_parameter,
+      small_angle_parameter,
+      end_step_parameter,
+      projected_parameter,
+  }};
+  static constexpr auto& parameters = own_parameters;
+
+  static Params params(std::span<const double> values) {
+    return {.kn = values[0],
+            .restitution = values[1],
+            .ks = values[2],
+            .friction = values[3],
+            .small_angle = values[4] != 0,
+            .end_step = values[5] != 0,
+            .projected = values[6] != 0};
+  }
+
+ private:
+  double loading_;    // k_1, N/m
+  double unloading_;  // k_2, N/m
+  double ks_;
+};
+
+using Hysteretic = Frictional<HystereticSprings>;
+
+}  // namespace eigengrain::contact

@@ -1,0 +1,143 @@
+#pragma once
+
+#include "eigengrain/contact/law.hpp"
+#include "eigengrain/contact/laws/frictional.hpp"
+
+#include <array>
+#include <span>
+#include <string>
+
+namespace eigengrain::contact {
+
+/// A spring against relative rotation as scene files describe it.
+struct RollingSpring {
+  double kr = 0;        ///< k_r, N m
+  double friction = 0;  ///< μ_r
+
+  static constexpr std::array<ParameterDescription, 2> parameters{{
+      {.name = "kr",
+       .unit = "N m",
+       .default_value = 0,
+       .minimum = 0,
+       .description =
+           "stiffness against rolling and twisting, a moment per radian of relative rotation; counts "
+           "only where `rolling_friction` is positive or `tension` is on"},
+      {.name = "rolling_friction",
+       .unit = "",
+       .default_value = 0,
+       .minimum = 0,
+       .description = "limits that moment to rolling_friction R* F_n, 1/R* = 1/R_1 + 1/R_2"},
+  }};
+};
+
+/// Rolling and twisting resistance beside a law: a moment M of the first side on the second,
+///
+///   incremental   M <- carried(M) - k_r φ     φ the relative rotation, all three components alike
+///   slip          |M| <= μ_r R* F_n           unless the law has tension
+///   energy        ½ |M|²/k_r
+///
+/// carried with the contact frame like the shear force, and zero when the contact forms. k_r adds to both
+/// rotational stiffnesses of the contact (κ_n, κ_s of eq. 1.34).
+template <class Base>
+class Rolling {
+ public:
+  struct State : Base::State {
+    Vec3 moment = Vec3::Zero();  ///< M, N m, of the first side on the second
+  };
+  static constexpr auto state_fields =
+      joined(Base::state_fields,
+             std::array<StateField, 1>{{{.name = "rolling_moment", .unit = "N m", .components = 3}}});
+  static constexpr bool asks_rate = contact::asks_rate<Base>;
+
+  Rolling(const Base& base, const RollingSpring& spring) : base_(base), spring_(spring) {
+    if (spring_.friction <= 0 && !base_.tension()) spring_.kr = 0;
+  }
+
+  bool tension() const { return base_.tension(); }
+  bool needs_rotation() const { return spring_.kr > 0 || base_.needs_rotation(); }
+  bool mid_step() const { return base_.mid_step(); }
+  State formed(const Vec3& n) const {
+    State state;
+    static_cast<typename Base::State&>(state) = base_.formed(n);
+    return state;
+  }
+  bool acts(const ContactMotion& motion, const State& old) const { return base_.acts(motion, old); }
+
+  Response respond(const ContactMotion& motion, const State& old, State& next) const {
+    Response response = base_.respond(motion, old, next);
+    next.moment = trial_moment(motion, old);
+    const double limit = limit_of(motion, response);
+    if (slips(next.moment, limit)) next.moment *= limit / next.moment.norm();
+    if (!acts(motion, old)) next.moment = Vec3::Zero();
+    response.force.moment += next.moment;
+    return response;
+  }
+  ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
+    return respond(motion, old, next).force;
+  }
+  ContactStiffness stiffness(const ContactMotion& motion, const State& old) const {
+    ContactStiffness k = base_.stiffness(motion, old);
+    k.twist += spring_.kr;
+    k.bending += spring_.kr;
+    return k;
+  }
+  /// Sticking: k_r. Slipping, with m = M/|M| of the trial moment: (μ_r R* F_n/|M|) k_r (1 - mmᵀ), and -dM/dδ
+  /// = μ_r R* k_n m nᵀ, as the limit follows the normal force.
+  ContactTangent tangent(const ContactMotion& motion, const State& old) const {
+    ContactTangent result = base_.tangent(motion, old);
+    State discarded;
+    const double limit = limit_of(motion, base_.respond(motion, old, discarded));
+    const Vec3 trial = trial_moment(motion, old);
+    if (!slips(trial, limit)) {
+      result.rotation += spring_.kr * Mat3::Identity();
+      return result;
+    }
+    const Vec3& n = motion.normal;
+    const double magnitude = trial.norm();
+    const Vec3 m = trial / magnitude;
+    result.rotation += limit / magnitude * spring_.kr * (Mat3::Identity() - m * m.transpose());
+    const double kn = n.dot(result.translation * n);
+    result.coupling += spring_.friction * motion.reduced_radius * kn * m * n.transpose();
+    return result;
+  }
+  double energy(const ContactMotion& motion, const State& old) const {
+    const double base = base_.energy(motion, old);
+    if (spring_.kr <= 0) return base;
+    State next;
+    respond(motion, old, next);
+    return base + 0.5 * next.moment.squaredNorm() / spring_.kr;
+  }
+  DampingRatios damping() const requires contact::asks_rate<Base> { return base_.damping(); }
+
+  static constexpr std::string_view name = Base::name;
+  static constexpr std::string_view description = Base::description;
+  static constexpr auto& parameters = Base::parameters;
+  static constexpr std::size_t own_parameters = Base::own_parameters + RollingSpring::parameters.size();
+
+  static bool serves(std::span<const double> values) {
+    return are_defaults(values, parameters, own_parameters);
+  }
+  static Rolling from_values(std::span<const double> values) {
+    return {Base::from_values(values),
+            {.kr = values[Base::own_parameters], .friction = values[Base::own_parameters + 1]}};
+  }
+  static std::string mistake(std::span<const double> values) { return Base::mistake(values); }
+
+ private:
+  /// M before the slip check. Zero in the step in which the contact forms.
+  Vec3 trial_moment(const ContactMotion& motion, const State& old) const {
+    if (spring_.kr <= 0 || !old.formed()) return Vec3::Zero();
+    return carry_vector(old.moment, old.normal, motion.normal, motion.spin) - spring_.kr * motion.rotation;
+  }
+  double limit_of(const ContactMotion& motion, const Response& base) const {
+    return spring_.friction * motion.reduced_radius * base.normal_force;
+  }
+  bool slips(const Vec3& moment, double limit) const {
+    return !base_.tension() && moment.squaredNorm() > limit * limit;
+  }
+
+  Base base_;
+  RollingSpring spring_;
+};
+
+}  // namespace eigengrain::contact

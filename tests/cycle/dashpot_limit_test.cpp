@@ -1,0 +1,155 @@
+// How long a step may be with dashpots: the bound against the truth of dense systems, and the truth by
+// running.
+#include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/cycle/policy.hpp"
+
+#include "support/laws.hpp"
+#include "support/motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+namespace eigengrain::test {
+namespace {
+
+using cycle::Cycle;
+
+/// The largest stable step 2/μ, μ the largest root of det(μ² M/(1 + α) - μ C - K) = 0, of a dense system.
+double true_limit(const System& system, double alpha) {
+  assembly::LinearSystem viscous = assembly::with_viscosity(system, 1.0);
+  const Eigen::MatrixXd k = (1 + alpha) * assembly::dense_scaled_stiffness(system);
+  const Eigen::MatrixXd c = (1 + alpha) * assembly::dense_scaled_stiffness(viscous) - k;
+  const Eigen::Index n = k.rows();
+  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(2 * n, 2 * n);  // of (x, μx)
+  companion.topRightCorner(n, n).setIdentity();
+  companion.bottomLeftCorner(n, n) = k;
+  companion.bottomRightCorner(n, n) = c;
+  const Eigen::VectorXcd mu = Eigen::EigenSolver<Eigen::MatrixXd>(companion, false).eigenvalues();
+  return 2 / mu.real().maxCoeff();
+}
+
+/// One mode: (2/ω)(√(ξ² + 1/(1 + α)) - ξ).
+double limit_of_one(double omega, double xi, double alpha) {
+  return 2 / omega * (std::sqrt(xi * xi + 1 / (1 + alpha)) - xi);
+}
+
+SceneBuilder ball_on_wall(double beta, double alpha) {
+  SceneBuilder builder = with_law("linear", {{"kn", 1}, {"tension", 1}, {"beta_n", beta}});
+  return builder.ball({0, 0, 1 - 1e-9}).plane({0, 0, 0}, {0, 0, 1}).damped(alpha);
+}
+
+TEST(DampedBlockBound, IsTheLimitOfABallOnAWall) {
+  for (const double beta : {0.0, 0.1, 1.0, 3.0})
+    for (const double alpha : {0.0, 0.2, 0.7}) {
+      const System system(ball_on_wall(beta, alpha));
+      const double expected = limit_of_one(1, beta, alpha);
+      EXPECT_NEAR(true_limit(system, alpha) / expected, 1, 1e-12);
+      // Each refinement takes away at least half of what is left, and it begins with the root itself.
+      EXPECT_NEAR(cycle::damped_block_bound(system, alpha) / expected, 1, 1e-11) << beta << " " << alpha;
+    }
+  EXPECT_NEAR(limit_of_one(1, 1, 0.7) / 2, 0.26025, 5e-6);
+}
+
+TEST(DampedBlockBound, IsNeverAboveTheTruthInRandomClusters) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  double worst = 1;
+  for (int scene = 0; scene < 150; ++scene) {
+    SceneBuilder builder = random_cluster(random, 4 + scene % 9, {}, 2, 0.2);
+    builder.scene().contacts = {{.law = "linear",
+                                 .parameters = values_of("linear", {{"kn", 1},
+                                                                    {"ks", 0.7 * uniform(random)},
+                                                                    {"friction", 1},
+                                                                    {"beta_n", 2 * uniform(random)},
+                                                                    {"beta_s", uniform(random)}})}};
+    const System system(builder);
+    if (system.elements.empty() || system.unknowns.free_components().empty()) continue;
+    const double alpha = scene % 2 == 0 ? 0.0 : 0.7;
+    const double truth = true_limit(system, alpha);
+    const double bound = cycle::damped_block_bound(system, alpha);
+    if (!std::isfinite(truth)) continue;
+    ASSERT_LE(bound, truth * (1 + 1e-9)) << "scene " << scene;
+    worst = std::min(worst, bound / truth);
+  }
+  std::printf("damped block bound: at least %.3f of the truth\n", worst);
+  EXPECT_GT(worst, 0.7);  // the same that a block bound is worth without dashpots
+}
+
+TEST(DampedBlockBound, WithoutDashpotsIsTheUndampedOneOverRootOnePlusAlpha) {
+  std::mt19937_64 random(2);
+  const System system(random_cluster(random, 10, {.kn = 1, .ks = 0.5}));
+  EXPECT_EQ(cycle::damped_block_bound(system, 0.7),
+            cycle::damped_timestep(cycle::scaled_block_bound(system), 0.7));
+}
+
+/// Largest speed of the last tenth of some steps over the speed at the start, at a part of the limit.
+double growth(double beta, double alpha, double of_limit, int steps) {
+  SceneBuilder builder = ball_on_wall(beta, alpha);
+  builder.moving({0, 0, 1e-6});
+  Cycle cycle = cycle_of(std::move(builder), of_limit * limit_of_one(1, beta, alpha));
+  double most = 0;
+  for (int k = 0; k < steps; ++k) {
+    cycle.step();
+    if (10 * k >= 9 * steps) most = std::max(most, std::abs(velocity_of(cycle.state(), 0).z()));
+  }
+  return most / 1e-6;
+}
+
+// Near z = -1 the root moves by about -1e-3 for a thousandth of the step: e^0.001 a step at least, 20,000
+// steps.
+TEST(DampedLimit, IsWhereTheCycleBeginsToGrow) {
+  for (const double beta : {0.1, 1.0})
+    for (const double alpha : {0.0, 0.7}) {
+      const double below = growth(beta, alpha, 0.999, 20000);
+      const double above = growth(beta, alpha, 1.001, 20000);
+      std::printf("beta %.1f, alpha %.1f: %.2e below, %.2e above\n", beta, alpha, below, above);
+      EXPECT_LT(below, 1);
+      EXPECT_GT(above, 1e3);
+    }
+}
+
+TEST(Policies, TakeDashpotsIntoAccount) {
+  for (const double beta : {0.2, 1.0}) {
+    SceneBuilder builder = ball_on_wall(beta, 0.7);
+    const assembly::State state = cycle::start(builder.scene());
+    model::Scene& settings = builder.scene();
+    settings.timestep = {model::TimestepPolicy::bound, 0.9, {}};
+    EXPECT_NEAR(cycle::policy_of(settings).dt(state), 0.9 * limit_of_one(1, beta, 0.7), 1e-11);
+    settings.timestep = {model::TimestepPolicy::estimate, 0.8, {}};
+    // PFC3D's eq. 1.35: k over F(β)², F(β) = √(1 + β²) - β.
+    EXPECT_NEAR(cycle::policy_of(settings).dt(state), 0.8 * (std::sqrt(1 + beta * beta) - beta), 1e-14);
+  }
+}
+
+// A ball in flight is judged by the contact that it may form.
+TEST(Policies, JudgeFirstContactsWithTheirDashpotsAndTheirImpact) {
+  SceneBuilder builder = with_law("linear", {{"kn", 1}, {"beta_n", 0.5}});
+  builder.ball({0, 0, 5}).plane({0, 0, 0}, {0, 0, 1}).damped(0.7);
+  builder.scene().timestep = {model::TimestepPolicy::bound, 1.0, {}};
+  // Two such balls: ω² = 2k/m; c of the ball's own mass, c/m_reduced = 4βω_1, so ξ = 4β/2√2 of ω.
+  const double expected = limit_of_one(std::sqrt(2.0), std::sqrt(2.0) * 0.5, 0.7);
+  EXPECT_NEAR(cycle::policy_of(builder.scene()).dt(cycle::start(builder.scene())), expected, 1e-12);
+
+  SceneBuilder fast = with_law("hertz", {{"effective_young", 1e6}});
+  fast.ball({0, 0, 5}).moving({0, 0, -1}).plane({0, 0, 0}, {0, 0, 1});
+  SceneBuilder faster = fast;
+  faster.scene().bodies.velocity[0].z() = -100;
+  const auto step = [](SceneBuilder& scene) {
+    return cycle::policy_of(scene.scene()).dt(cycle::start(scene.scene()));
+  };
+  EXPECT_LT(step(faster), 0.8 * step(fast));
+}
+
+// A stiffness that follows the overlap has to be asked for while contacts only get deeper.
+TEST(Policies, AskMoreOftenWhereStiffnessFollowsTheOverlap) {
+  SceneBuilder linear = with_law("linear", {{"kn", 1}});
+  SceneBuilder hertz = with_law("hertz", {{"effective_young", 1}});
+  EXPECT_GT(cycle::policy_of(linear.scene()).every, 10 * cycle::policy_of(hertz.scene()).every);
+  EXPECT_GT(cycle::policy_of(hertz.scene()).every, 0);
+}
+
+}  // namespace
+}  // namespace eigengrain::test
