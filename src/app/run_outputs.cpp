@@ -28,8 +28,20 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
     const assembly::Balance b = assembly::balance_of(state);
     values.unbalanced = {b.mean, b.max};
   }
-  if (history.walls) values.wall_forces = assembly::wall_forces(state.model);
+  if (history.walls || history.wall_moments)
+    for (const assembly::WallLoad& load : assembly::wall_loads(state.model)) {
+      values.wall_forces.push_back(load.force);
+      values.wall_moments.push_back(load.moment);
+    }
+  if (history.wall_positions)
+    for (const model::Plane& wall : state.model.walls) values.wall_positions.push_back(wall.centre);
   return values;
+}
+
+std::vector<std::string> wall_names(const assembly::Model& model) {
+  std::vector<std::string> names;
+  for (const model::Plane& wall : model.walls) names.push_back(wall.name);
+  return names;
 }
 
 }  // namespace
@@ -46,7 +58,7 @@ RunOutputs::RunOutputs(const Input& input)
     if (input.stem != std::filesystem::path(input.state.settings.name).stem())
       history.file = input.stem + "-" + history.file;
     const bool there = input.continued && std::filesystem::exists(input.folder / history.file);
-    histories_.emplace_back(input.folder, history, input.state.model.walls,
+    histories_.emplace_back(input.folder, history, wall_names(input.state.model),
                             there ? std::optional(step) : std::nullopt);
   }
 }

@@ -247,9 +247,22 @@ void list_contacts(Model& model, const model::Scene& scene, double reach, NewCon
                                 touching);
 }
 
+void begin_list(State& state) {
+  NeighbourList& list = state.list;
+  list.position = state.model.bodies.position;
+  list.wall_way = 0;
+  list.wall_lever.clear();
+  for (const model::WallPose& pose : state.model.wall_poses) {
+    double farthest = 0;
+    for (const Vec3& x : list.position) farthest = std::max(farthest, (x - pose.centre).norm());
+    // While the list holds, body and centre may each move by half the skin.
+    list.wall_lever.push_back(farthest + list.skin);
+  }
+}
+
 void renew_list(State& state, double reach) {
   list_contacts(state.model, state.settings, reach, NewContacts::unformed);
-  state.list.position = state.model.bodies.position;
+  begin_list(state);
   ++state.list.rebuilds;
 }
 

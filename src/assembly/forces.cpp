@@ -72,7 +72,7 @@ template <bool turns, bool commit, class Group>
 void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement,
                                 const Trial& trial, BodyForces& sum) {
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
-  using State = typename std::decay_t<Group>::State;
+  using ContactState = typename std::decay_t<Group>::State;
   // Flat: the small functions of kinematics and laws are many, and calls among them pass everything through
   // memory.
   const auto one_chunk = [&](std::int64_t, std::int64_t, std::int64_t chunk) __attribute__((flatten)) {
@@ -82,7 +82,7 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
       const auto& old = group.states[c];
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
       if (!group.law.acts(contact::at_rest(geometry), old)) {
-        if constexpr (commit) group.states[c] = State{};
+        if constexpr (commit) group.states[c] = ContactState{};
         if constexpr (Kinematics::second_is_body)
           if (const std::int32_t slot = plan.slot[c]; slot != own_chunk) {
             foreign_force_[slot].setZero();
@@ -90,7 +90,7 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
           }
         continue;
       }
-      State next;
+      ContactState next;
       const contact::ContactForce f =
           group.law.evaluate(motion_in<Kinematics>(group.law, placement, trial, pair, geometry), old, next);
       if constexpr (commit) group.states[c] = next;
@@ -118,7 +118,7 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   sum.force.assign(bodies, Vec3::Zero());
   sum.moment.assign(turns ? bodies : 0, Vec3::Zero());
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = placement_in(model, trial);
   auto plan = plans_.begin();
   model.contacts.for_each_group(
       [&](auto& group) { sum_group<turns, commit>(*plan++, group, placement, trial, sum); });
@@ -186,20 +186,30 @@ double elastic_energy(const Model& model) {
   return elastic_energy(model, no_displacement(model));
 }
 
-std::vector<Vec3> wall_forces(const Model& model) {
-  std::vector<Vec3> forces(model.walls.size(), Vec3::Zero());
+std::vector<WallLoad> wall_loads(const Model& model) {
+  std::vector<WallLoad> loads(model.walls.size());
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Group = std::decay_t<decltype(group)>;
-    if constexpr (!Group::KinematicsType::second_is_body) {
+    using Kinematics = typename Group::KinematicsType;
+    if constexpr (!Kinematics::second_is_body) {
       for (std::size_t c = 0; c < group.pairs.size(); ++c) {
         typename Group::State discarded;
-        const contact::ContactGeometry geometry = Group::KinematicsType::geometry(placement, group.pairs[c]);
-        forces[group.pairs[c].b] +=
-            group.law.evaluate(contact::at_rest(geometry), group.states[c], discarded).force;
+        const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
+        const contact::EndForces ends = contact::end_forces(
+            geometry, group.law.evaluate(contact::at_rest(geometry), group.states[c], discarded));
+        WallLoad& load = loads[static_cast<std::size_t>(Kinematics::wall(placement, group.pairs[c]))];
+        load.force += ends.force_b;
+        load.moment += ends.moment_b;
       }
     }
   });
+  return loads;
+}
+
+std::vector<Vec3> wall_forces(const Model& model) {
+  std::vector<Vec3> forces;
+  for (const WallLoad& load : wall_loads(model)) forces.push_back(load.force);
   return forces;
 }
 

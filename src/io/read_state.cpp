@@ -1,4 +1,5 @@
 #include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/assembly/moving_walls.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/io/state_file.hpp"
 
@@ -91,6 +92,32 @@ void read_list(const h5::File& hdf5, assembly::State& state) {
       hdf5.read<Vec3>(layout::list_position, rows == 0 ? 0 : state.model.bodies.position.size());
 }
 
+/// Puts the walls that had moved where they were. Others that move now begin where the settings say.
+void read_walls(const h5::File& hdf5, const fs::path& file, assembly::State& state) {
+  assembly::Model& model = state.model;
+  model.wall_motions = state.settings.wall_motions;
+  model.wall_poses = assembly::start_poses(model.wall_motions);
+  if (!hdf5.has(layout::walls)) return;
+  const std::size_t count = hdf5.rows(layout::wall_index);
+  const auto index = hdf5.read<std::int32_t>(layout::wall_index, count);
+  const auto centre = hdf5.read<Vec3>(layout::wall_centre, count);
+  const auto orientation = hdf5.read_doubles(layout::wall_orientation, count, 4);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto found = std::find_if(model.wall_motions.begin(), model.wall_motions.end(),
+                                    [&](const auto& motion) { return motion.wall == index[k]; });
+    if (found == model.wall_motions.end())
+      refuse(file, fmt::format("walls: wall number {} has moved since the start, and stands still now; keep "
+                               "its motion, or stop it with a velocity of [0, 0, 0]",
+                               index[k] + 1));
+    const double* q = &orientation[4 * k];
+    model.wall_poses[static_cast<std::size_t>(found - model.wall_motions.begin())] = {
+        centre[k], Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+  }
+  state.list.wall_way = hdf5.number(layout::list, "wall_way");
+  state.list.wall_lever = hdf5.read<double>(layout::list_wall_lever, hdf5.rows(layout::list_wall_lever));
+  assembly::place_walls(state);
+}
+
 /// Overrides may not pull away what the stored numbers rest upon.
 void refuse_changes(const model::Scene& stored, const model::Scene& now, const fs::path& file) {
   if (now.materials.size() != stored.materials.size())
@@ -111,7 +138,7 @@ void refuse_changes(const model::Scene& stored, const model::Scene& now, const f
 }
 
 bool same_place(const model::Plane& first, const model::Plane& second) {
-  return first.point == second.point && first.normal == second.normal;
+  return first.point == second.point && first.normal == second.normal && first.centre == second.centre;
 }
 
 /// Whether contacts may be elsewhere than where the neighbour list looked for them.
@@ -158,6 +185,7 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   state.settings.name = hdf5.text(layout::root, "scene");
   refuse_changes(stored, state.settings, file);
   state.model.walls = state.settings.walls;
+  read_walls(hdf5, file, state);
   state.model.cell = state.settings.cell;
   state.model.gravity = state.settings.gravity;
   state.model.local_damping = state.settings.local_damping;

@@ -1,4 +1,5 @@
 #include "scene_draft.hpp"
+#include "wall_motion_keys.hpp"
 
 #include <fmt/format.h>
 
@@ -17,10 +18,34 @@ struct WallEntry {
   std::size_t number;  ///< from 1
   std::int32_t material;
   SceneDraft& draft;
+  WallMotionKeys motion;
 
-  void add(const Vec3& point, const Vec3& normal, std::string_view what) const {
-    draft.scene.walls.push_back({point, normal, material, fmt::format("wall {} ({})", number, what)});
+  /// centre: where the entry says none
+  void add(const Vec3& point, const Vec3& normal, std::string_view what, const Vec3& centre) const {
+    const auto index = static_cast<std::int32_t>(draft.scene.walls.size());
+    draft.scene.walls.push_back(
+        {point, normal, material, fmt::format("wall {} ({})", number, what), motion.centre.value_or(centre)});
     draft.wall_places.push_back(section.place());
+    if (!motion.moves()) return;
+    draft.scene.wall_motions.push_back(
+        {index, draft.scene.walls.back().centre, motion.time, motion.velocity});
+    check_turn_against_cell(normal);
+  }
+
+ private:
+  /// A plane that turns out of a periodic axis would not repeat any more.
+  void check_turn_against_cell(const Vec3& normal) const {
+    const model::PeriodicCell& cell = draft.scene.cell;
+    for (const model::WallVelocity& row : motion.velocity)
+      for (int k = 0; k < 3; ++k) {
+        const bool stays = row.spin.cross(normal)[k] == 0 && row.spin.dot(normal) * row.spin[k] == 0;
+        if (!cell.periodic[static_cast<std::size_t>(k)] || stays) continue;
+        return section.report(
+            fmt::format("the spin ({:g}, {:g}, {:g}) rad/s turns the wall out of {}, which "
+                        "is periodic, so it would not repeat; turn it about that axis, or "
+                        "leave {} out of periodic.axes",
+                        row.spin[0], row.spin[1], row.spin[2], axis_names[k], axis_names[k]));
+      }
   }
 };
 
@@ -50,7 +75,7 @@ void read_plane(const WallEntry& wall, const Section& plane) {
   // Scaling by the largest component first keeps very long and very short vectors from over- or underflowing.
   const Vec3 unit = (*normal / normal->cwiseAbs().maxCoeff()).normalized();
   check_against_cell(plane, unit, wall.draft.scene.cell);
-  if (point) wall.add(*point, unit, "plane");
+  if (point) wall.add(*point, unit, "plane", *point);
 }
 
 /// The six sides of a box, as scene files name them.
@@ -96,7 +121,7 @@ void read_box(const WallEntry& wall, const Section& box) {
   check_open_along_cell(box, closed, wall.draft.scene.cell);
   for (const Side& side : closed)
     wall.add(side.upper ? *upper : *lower, (side.upper ? -1.0 : 1.0) * Vec3::Unit(side.axis),
-             "box " + side.name());
+             "box " + side.name(), 0.5 * (*lower + *upper));
 }
 
 }  // namespace
@@ -107,7 +132,7 @@ void read_walls(const Section& root, SceneDraft& draft) {
   for (const Section& section : root.sections("walls")) {
     section.check_keys();
     const std::int32_t material = read_material(section, "material", draft.scene);
-    const WallEntry wall{section, ++number, material, draft};
+    const WallEntry wall{section, ++number, material, draft, read_wall_motion(section, draft.folder)};
     if (section.has("plane") == section.has("box")) {
       section.report(
           "either a plane or a box is wanted, e.g. \"plane: {point: [0, 0, 0], normal: [0, 0, 1]}\"");

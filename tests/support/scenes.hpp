@@ -73,6 +73,14 @@ class SceneBuilder {
     scene_.walls.push_back({point, normal.normalized(), 0, "plane"});
     return *this;
   }
+  /// Motion of the plane added last, which turns about `centre`.
+  SceneBuilder& carried(const Vec3& velocity, const Vec3& spin = Vec3::Zero(),
+                        const Vec3& centre = Vec3::Zero()) {
+    scene_.walls.back().centre = centre;
+    const auto wall = static_cast<std::int32_t>(scene_.walls.size()) - 1;
+    scene_.wall_motions.push_back({wall, centre, {0.0}, {{velocity, spin}}});
+    return *this;
+  }
   SceneBuilder& periodic(const Vec3& lengths, std::array<bool, 3> axes = {true, true, true}) {
     scene_.cell = {Vec3::Zero(), lengths, axes};
     return *this;

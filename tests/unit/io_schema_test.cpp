@@ -47,15 +47,15 @@ std::vector<std::string> scenes_with_room() {
   const std::string file = "balls: [{file: packing.txt, material: grain}]\n";
   const std::string plane = "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]\n";
   const std::string box = "walls: [{box: {min: [0, 0, 0], max: [1, 1, 1]}, material: grain}]\n";
+  const std::string carried =
+      "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain, motion: [{time: 0}]}]\n";
   const std::string periodic = "periodic: {box: [1, 1, 1]}\n";
   const std::string fixed = "timestep: {policy: fixed, dt: 1e-5}\n";
   const std::string table = "histories: [{file: table.csv, of: unbalanced, balls: 0}]\n";
   const std::string no_law = "contacts: [{between: [grain, grain], law: none}]\n";
-  std::vector<std::string> scenes{materials + no_law + ball,
-                                  materials + no_law + file + fixed,
-                                  materials + no_law + ball + plane,
-                                  materials + no_law + ball + box,
-                                  materials + no_law + ball + periodic,
+  std::vector<std::string> scenes{materials + no_law + ball,           materials + no_law + file + fixed,
+                                  materials + no_law + ball + plane,   materials + no_law + ball + box,
+                                  materials + no_law + ball + carried, materials + no_law + ball + periodic,
                                   materials + no_law + ball + table};
   for (const contact::LawDescription& law : contact::law_descriptions()) {
     std::string needed;
@@ -77,6 +77,7 @@ std::string first_entry(std::string path) {
 TEST(Schema, EveryKeyIsAcceptedWithItsExampleAndItsDefault) {
   const TemporaryFolder folder;
   folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
+  folder.write("motion.csv", "0 0 0 0\n");
   const auto accepted = [&](const std::string& assignment, std::string& reasons) {
     for (const std::string& scene : scenes_with_room()) {
       const std::vector<Mistake> mistakes = mistakes_in(scene, {assignment}, folder.path());
@@ -97,6 +98,7 @@ TEST(Schema, EveryKeyIsAcceptedWithItsExampleAndItsDefault) {
 TEST(Schema, EverySectionRejectsUnknownKeys) {
   const TemporaryFolder folder;
   folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
+  folder.write("motion.csv", "0 0 0 0\n");
   for (const KeyDescription& key : scene_schema()) {
     std::string path = first_entry(key.path);
     if (key.kind == KeyKind::section_list)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/moving_walls.hpp"
 
 #include <cstdint>
 #include <span>
@@ -22,6 +23,7 @@ struct Trial {
   std::span<const Vec3> velocity;  ///< [bodies]
   std::span<const Vec3> spin;      ///< [bodies]; or empty: nothing turns
   double duration = 1;
+  const WallStep* walls = nullptr;  ///< how walls moved; null: all stand still
 
   contact::SideMotion side(std::int32_t body) const {
     const auto i = static_cast<std::size_t>(body);
@@ -29,12 +31,22 @@ struct Trial {
   }
 };
 
+/// Where the sides of contacts are in a trial state.
+inline contact::Placement placement_in(const Model& model, const Trial& trial) {
+  contact::Placement placement = model.placement(trial.position);
+  if (trial.walls != nullptr) placement.middle_walls = trial.walls->middle;
+  return placement;
+}
+
 /// The motion of a contact in a trial state, as its law wants it.
 template <class Kinematics, class Law>
 contact::ContactMotion motion_in(const Law& law, const contact::Placement& placement, const Trial& trial,
                                  const contact::Pair& pair, const contact::ContactGeometry& geometry) {
   contact::SideMotion second;
-  if constexpr (Kinematics::second_is_body) second = trial.side(pair.b);
+  if constexpr (Kinematics::second_is_body)
+    second = trial.side(pair.b);
+  else if (trial.walls != nullptr)
+    second = trial.walls->side[static_cast<std::size_t>(Kinematics::wall(placement, pair))];
   return contact::motion_for<Kinematics>(law, placement, pair, geometry, trial.side(pair.a), second);
 }
 
@@ -94,6 +106,15 @@ double elastic_energy(const Model& model, const Displacement& displacement);
 
 /// Elastic energy of all contacts of the model as it stands, J.
 double elastic_energy(const Model& model);
+
+/// What the bodies exert on a wall: force (N) and moment about its centre (N m).
+struct WallLoad {
+  Vec3 force = Vec3::Zero();
+  Vec3 moment = Vec3::Zero();
+};
+
+/// Load on each wall of the model as it stands [walls].
+std::vector<WallLoad> wall_loads(const Model& model);
 
 /// Force of the bodies on each wall of the model as it stands [walls], N.
 std::vector<Vec3> wall_forces(const Model& model);

@@ -10,8 +10,10 @@ namespace eigengrain::assembly {
 
 /// A scene brought to life: bodies in storage order, and the contacts that act between them.
 struct Model {
-  model::Bodies bodies;  ///< along a space-filling curve; identity is the place in the scene
-  std::vector<model::Plane> walls;
+  model::Bodies bodies;             ///< along a space-filling curve; identity is the place in the scene
+  std::vector<model::Plane> walls;  ///< where they are now
+  std::vector<model::WallMotion> wall_motions;  ///< of those that move
+  std::vector<model::WallPose> wall_poses;      ///< [wall_motions] where these are now
   model::PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
   double local_damping = 0;     ///< α
@@ -20,7 +22,7 @@ struct Model {
   /// The sides of contacts with the bodies where they are, or at trial positions [bodies].
   contact::Placement placement() const { return placement(bodies.position); }
   contact::Placement placement(std::span<const Vec3> position) const {
-    return {position, bodies.radius, walls, cell};
+    return {position, bodies.radius, walls, cell, {}};
   }
 };
 

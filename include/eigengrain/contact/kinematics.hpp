@@ -27,6 +27,8 @@ struct Placement {
   std::span<const double> radius;  ///< [bodies] m
   std::span<const model::Plane> walls;
   const model::PeriodicCell& cell;
+  /// Walls as they were in the middle of the step; empty where none moves.
+  std::span<const model::Plane> middle_walls{};
 };
 
 /// Side a is a ball, side b another ball (or an image of the same one).
@@ -52,7 +54,7 @@ struct BallBall {
   }
 };
 
-/// Side a is a ball, side b a plane, which has no unknowns.
+/// Side a is a ball, side b a plane, which has no unknowns; its motion is given.
 struct BallPlane {
   static constexpr std::string_view name = "ball-wall";
   static constexpr bool second_is_body = false;
@@ -60,13 +62,18 @@ struct BallPlane {
   static double curvature(const ContactGeometry& /*geometry*/) { return 0.0; }
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
-    return geometry_before(placement, pair, Vec3::Zero(), Vec3::Zero());
+    const auto a = static_cast<std::size_t>(pair.a);
+    return ball_plane(placement.position[a], placement.radius[a], placement.walls[pair.b]);
   }
+  /// The geometry in the middle of the step: a wall that turns is not just set back.
   static ContactGeometry geometry_before(const Placement& placement, const Pair& pair, const Vec3& back_a,
                                          const Vec3& /*back_b*/) {
     const auto a = static_cast<std::size_t>(pair.a);
-    return ball_plane(placement.position[a] - back_a, placement.radius[a], placement.walls[pair.b]);
+    const auto walls = placement.middle_walls.empty() ? placement.walls : placement.middle_walls;
+    return ball_plane(placement.position[a] - back_a, placement.radius[a], walls[pair.b]);
   }
+  /// Index of the wall that side b belongs to.
+  static std::int32_t wall(const Placement& /*placement*/, const Pair& pair) { return pair.b; }
 };
 
 using KinematicsTypes = TypeList<BallBall, BallPlane>;
