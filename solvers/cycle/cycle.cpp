@@ -58,7 +58,7 @@ State start(const model::Scene& scene) {
   const auto count = static_cast<std::size_t>(bodies.size());
   if (bodies.velocity.empty()) bodies.velocity.assign(count, Vec3::Zero());
   if (bodies.spin.empty() && assembly::needs_rotation(scene)) bodies.spin.assign(count, Vec3::Zero());
-  state.list.position = bodies.position;
+  assembly::begin_list(state);
 
   assembly::BodyForces forces;
   assembly::ContactForceSum(state.model, state.turns())
@@ -69,8 +69,13 @@ State start(const model::Scene& scene) {
 }
 
 Cycle::Cycle(State state, TimestepPolicy policy)
-    : state_(std::move(state)), policy_(std::move(policy)), forces_(state_.model, state_.turns()) {
-  if (std::ssize(state_.list.position) != state_.model.bodies.size()) list_anew();
+    : state_(std::move(state)),
+      policy_(std::move(policy)),
+      forces_(state_.model, state_.turns()),
+      walls_(state_.model) {
+  if (std::ssize(state_.list.position) != state_.model.bodies.size() ||
+      state_.list.wall_lever.size() != state_.model.wall_poses.size())
+    list_anew();
   if (state_.next_dt == 0) choose_timestep();
 }
 
@@ -116,12 +121,16 @@ void Cycle::choose_timestep() {
 void Cycle::step() {
   const double dt = state_.next_dt;
   const double half_skin = 0.5 * state_.list.skin;
-  const bool expired = !(move(0.5 * (state_.dt + dt), dt) <= half_skin * half_skin);
+  if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
+  const double way = move(0.5 * (state_.dt + dt), dt);
+  const bool expired = !(way <= half_skin * half_skin && state_.list.wall_way <= half_skin);
   if (expired) list_anew();
 
   model::Bodies& bodies = state_.model.bodies;
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
-  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt, 1 / dt}, sum);
+  forces_.advance(
+      state_.model,
+      {bodies.position, bodies.velocity, bodies.spin, dt, 1 / dt, walls_.any() ? &walls_ : nullptr}, sum);
   state_.force = std::move(sum.force);
   state_.moment = std::move(sum.moment);
 

@@ -102,6 +102,7 @@ bool closed(const State& state) {
   const assembly::Model& model = state.model;
   for (int k = 0; k < 3; ++k)
     if (model.cell.periodic[k] && model.gravity[k] != 0) return false;
+  if (!model.wall_motions.empty()) return false;
   const model::Bodies& bodies = model.bodies;
   for (std::size_t i = 0; i < bodies.position.size(); ++i)
     for (int k = 0; k < 3; ++k) {

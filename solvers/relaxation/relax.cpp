@@ -68,6 +68,9 @@ class Relaxation {
     const Clock clock(state_);
     const GivenVelocities given(state_);
     const double damping = std::exchange(state_.model.local_damping, explicit_damping);
+    // Walls rest while an equilibrium is sought, and move on afterwards.
+    auto motions = std::exchange(state_.model.wall_motions, {});
+    auto poses = std::exchange(state_.model.wall_poses, {});
     halt(state_);
     result_.start = result_.end = assembly::balance_of(state_);
     double hand_over = first_hand_over;
@@ -89,6 +92,8 @@ class Relaxation {
     given.restore(state_);
     clock.restore(state_);
     state_.model.local_damping = damping;
+    state_.model.wall_motions = std::move(motions);
+    state_.model.wall_poses = std::move(poses);
     result_.converged = at_rest_within(result_.end, options_.tolerance);
     result_.seconds = watch.seconds();
     return std::move(result_);

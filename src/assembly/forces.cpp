@@ -1,7 +1,9 @@
 #include "eigengrain/assembly/forces.hpp"
 
+#include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/facet_choice.hpp"
 
 #include <algorithm>
 
@@ -78,7 +80,12 @@ template <bool turns, bool commit, class Group>
 void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement,
                                 const Trial& trial, BodyForces& sum) {
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
-  using State = typename std::decay_t<Group>::State;
+  using ContactState = typename std::decay_t<Group>::State;
+  if constexpr (commit && std::is_same_v<Kinematics, contact::BallFacet>)
+    for_chunks(std::ssize(sum.force), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
+      contact::follow_facets(placement, group, static_cast<std::size_t>(plan.starts[chunk]),
+                             static_cast<std::size_t>(plan.starts[chunk + 1]));
+    });
   // Flat: the small functions of kinematics and laws are many, and calls among them pass everything through
   // memory. Not under sanitizers, whose checks make hundreds of megabytes of it.
   const auto one_chunk = [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT {
@@ -88,7 +95,7 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
       const auto& old = group.states[c];
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
       if (!group.law.acts(contact::at_rest(geometry), old)) {
-        if constexpr (commit) group.states[c] = State{};
+        if constexpr (commit) group.states[c] = ContactState{};
         if constexpr (Kinematics::second_is_body)
           if (const std::int32_t slot = plan.slot[c]; slot != own_chunk) {
             foreign_force_[slot].setZero();
@@ -96,7 +103,7 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
           }
         continue;
       }
-      State next;
+      ContactState next;
       const contact::ContactForce f =
           group.law.evaluate(motion_in<Kinematics>(group.law, placement, trial, pair, geometry), old, next);
       if constexpr (commit) group.states[c] = next;
@@ -124,7 +131,7 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   sum.force.assign(bodies, Vec3::Zero());
   sum.moment.assign(turns ? bodies : 0, Vec3::Zero());
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = placement_in(model, trial);
   auto plan = plans_.begin();
   model.contacts.for_each_group(
       [&](auto& group) { sum_group<turns, commit>(*plan++, group, placement, trial, sum); });
@@ -149,10 +156,14 @@ void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForce
 }
 
 void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum) {
-  if (turns_)
-    sum_groups<true, true>(model, trial, sum);
-  else
-    sum_groups<false, true>(model, trial, sum);
+  try {
+    if (turns_)
+      sum_groups<true, true>(model, trial, sum);
+    else
+      sum_groups<false, true>(model, trial, sum);
+  } catch (const contact::CentreOnFacet& found) {
+    throw centre_on_facet(model, found);
+  }
 }
 
 BodyForces contact_forces(const Model& model, const Displacement& displacement) {
@@ -192,18 +203,29 @@ double elastic_energy(const Model& model) {
   return elastic_energy(model, no_displacement(model));
 }
 
-std::vector<Vec3> wall_forces(const Model& model) {
-  std::vector<Vec3> forces(model.walls.size(), Vec3::Zero());
+std::vector<WallLoad> wall_loads(const Model& model) {
+  std::vector<WallLoad> loads(model.wall_count());
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Group = std::decay_t<decltype(group)>;
-    if constexpr (!Group::KinematicsType::second_is_body) {
+    using Kinematics = typename Group::KinematicsType;
+    if constexpr (!Kinematics::second_is_body) {
       for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-        const contact::ContactGeometry geometry = Group::KinematicsType::geometry(placement, group.pairs[c]);
-        forces[group.pairs[c].b] += contact::force_now(group.law, geometry, group.states[c]).force;
+        const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
+        const contact::EndForces ends =
+            contact::end_forces(geometry, contact::force_now(group.law, geometry, group.states[c]));
+        WallLoad& load = loads[static_cast<std::size_t>(Kinematics::wall(placement, group.pairs[c]))];
+        load.force += ends.force_b;
+        load.moment += ends.moment_b;
       }
     }
   });
+  return loads;
+}
+
+std::vector<Vec3> wall_forces(const Model& model) {
+  std::vector<Vec3> forces;
+  for (const WallLoad& load : wall_loads(model)) forces.push_back(load.force);
   return forces;
 }
 

@@ -38,14 +38,18 @@ void add_vector(std::vector<std::string>& names, const std::string& prefix, std:
   for (const char axis : axes) names.push_back(fmt::format("{}{} [{}]", prefix, axis, unit));
 }
 
-std::vector<std::string> column_names(const model::History& history, std::span<const model::Plane> walls) {
+std::vector<std::string> column_names(const model::History& history, std::span<const std::string> walls) {
   std::vector<std::string> names{"step", "time [s]"};
   if (history.energies)
     for (const char* name : {"kinetic [J]", "elastic [J]", "gravitational [J]"}) names.emplace_back(name);
   if (history.unbalanced)
     for (const char* name : {"unbalanced mean", "unbalanced max"}) names.emplace_back(name);
   if (history.walls)
-    for (const model::Plane& wall : walls) add_vector(names, wall.name + " force ", "N");
+    for (const std::string& wall : walls) add_vector(names, wall + " force ", "N");
+  if (history.wall_moments)
+    for (const std::string& wall : walls) add_vector(names, wall + " moment ", "N m");
+  if (history.wall_positions)
+    for (const std::string& wall : walls) add_vector(names, wall + " centre ", "m");
   for (const std::int64_t ball : history.balls) {
     const std::string prefix = fmt::format("ball {} ", ball);
     add_vector(names, prefix, "m");
@@ -106,7 +110,7 @@ Kept kept_lines(std::string_view text, std::size_t header_size, std::size_t colu
 }  // namespace
 
 HistoryFile::HistoryFile(const fs::path& folder, const model::History& history,
-                         std::span<const model::Plane> walls, std::optional<std::int64_t> continue_from)
+                         std::span<const std::string> walls, std::optional<std::int64_t> continue_from)
     : history_(history),
       file_name_(folder / history.file),
       header_(header(walls)),
@@ -127,7 +131,7 @@ HistoryFile::HistoryFile(const fs::path& folder, const model::History& history,
   if (!file_) throw_cannot_write(file_name_);
 }
 
-std::string HistoryFile::header(std::span<const model::Plane> walls) const {
+std::string HistoryFile::header(std::span<const std::string> walls) const {
   std::string text;
   for (const std::string& name : column_names(history_, walls))
     text += (text.empty() ? "" : ",") + csv_field(name);
@@ -169,10 +173,13 @@ std::string HistoryFile::line(const assembly::State& state, const HistoryValues&
       put(text, energy);
   if (history_.unbalanced)
     for (const double ratio : {values.unbalanced.mean, values.unbalanced.max}) put(text, ratio);
-  if (history_.walls) {
-    EIGENGRAIN_ASSERT(values.wall_forces.size() == walls_, values.wall_forces.size(), walls_);
-    for (const Vec3& force : values.wall_forces) put(text, force);
-  }
+  const auto put_walls = [&](const std::vector<Vec3>& of_walls) {
+    EIGENGRAIN_ASSERT(of_walls.size() == walls_, of_walls.size(), walls_);
+    for (const Vec3& value : of_walls) put(text, value);
+  };
+  if (history_.walls) put_walls(values.wall_forces);
+  if (history_.wall_moments) put_walls(values.wall_moments);
+  if (history_.wall_positions) put_walls(values.wall_positions);
   const model::Bodies& bodies = state.model.bodies;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const std::size_t row = rows_[k] = row_of(history_.balls[k], rows_[k], bodies);

@@ -53,8 +53,11 @@ bool read_columns(const Section& section, const SceneDraft& draft, model::Histor
   history.energies = wanted("energies");
   history.unbalanced = wanted("unbalanced");
   history.walls = wanted("walls");
+  history.wall_moments = wanted("wall_moments");
+  history.wall_positions = wanted("wall_positions");
   history.balls = *balls;
-  if (history.walls && draft.scene.walls.empty() && draft.walls_complete)
+  const bool of_walls = history.walls || history.wall_moments || history.wall_positions;
+  if (of_walls && draft.scene.walls.empty() && draft.scene.surfaces.empty() && draft.walls_complete)
     section.report("of", "walls, and the scene has none; remove the word, or add walls");
   check_balls(section, *balls, draft);
   return true;

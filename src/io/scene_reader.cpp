@@ -53,6 +53,28 @@ Document read_document(std::string_view yaml, std::string_view name, std::span<c
 
 constexpr std::string_view balls_key = "balls";
 
+void make_absolute(Node* path, const std::filesystem::path& folder) {
+  if (path != nullptr && path->kind == Node::Kind::scalar && !path->text.empty())
+    path->text = std::filesystem::absolute(folder / path->text).lexically_normal().string();
+}
+
+/// The document with the paths of files that walls name made absolute: a state, which keeps it, may stand in
+/// any folder.
+std::string document_for_states(const Document& document, const std::filesystem::path& folder) {
+  Node root;
+  for (const Node& section : document.root.children)
+    if (section.key != balls_key) root.children.push_back(section);
+  for (Node& section : root.children) {
+    if (section.key != "walls") continue;
+    for (Node& wall : section.children)
+      for (Node& child : wall.children) {
+        make_absolute(child.key == "motion_file" ? &child : nullptr, folder);
+        make_absolute(child.key == "mesh" ? child.find("file") : nullptr, folder);
+      }
+  }
+  return document_text(root, balls_key);
+}
+
 /// Of balls that exist, what the checks of the rest ask for: their materials.
 void take_materials_of_balls(const Section& root, SceneDraft& draft,
                              std::span<const std::int32_t> material_of_ball) {
@@ -79,7 +101,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   SceneDraft draft;
   draft.scene.name = name;
   draft.folder = folder;
-  draft.scene.document = document_text(document.root, balls_key);
+  draft.scene.document = document_for_states(document, folder);
   const Section root(document.root, "", "", diagnostics);
   root.check_keys();
   read_sections(root, draft, read_balls);
@@ -99,7 +121,7 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
   SceneDraft draft;
   draft.scene.name = name;
   draft.folder = folder;
-  draft.scene.document = document_text(document.root, balls_key);
+  draft.scene.document = document_for_states(document, folder);
   const Section root(document.root, "", "", diagnostics);
   root.check_keys(balls_key);
   read_sections(root, draft, [&](const Section& section, SceneDraft& into) {

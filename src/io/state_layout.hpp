@@ -25,6 +25,13 @@ inline const std::string moment = "/bodies/moment";
 inline const std::string contacts = "/contacts";
 inline const std::string list = "/neighbour_list";
 inline const std::string list_position = "/neighbour_list/position";
+inline const std::string list_wall_lever = "/neighbour_list/wall_lever";
+inline const std::string surfaces = "/surfaces";
+inline const std::string surface_fingerprint = "/surfaces/fingerprint";
+inline const std::string walls = "/moving_walls";
+inline const std::string wall_index = "/moving_walls/wall";
+inline const std::string wall_centre = "/moving_walls/centre";
+inline const std::string wall_orientation = "/moving_walls/orientation";
 
 /// The columns with one row a body that every state has.
 template <class State, class Visit>

@@ -4,6 +4,7 @@
 #include "eigengrain/io/state_file.hpp"
 
 #include "atomic_file.hpp"
+#include "fingerprint.hpp"
 #include "hdf5.hpp"
 #include "seal.hpp"
 #include "state_layout.hpp"
@@ -65,6 +66,11 @@ void write_pairs(const Group& group, const std::string& path, h5::File& file) {
   file.write(path + "/a", first);
   file.write(path + "/b", second);
   file.write(path + "/image", image);
+  if constexpr (std::is_same_v<typename Group::KinematicsType, contact::BallFacet>) {
+    std::vector<std::int8_t> side;
+    for (const contact::Pair& pair : group.pairs) side.push_back(pair.side);
+    file.write(path + "/side", side);
+  }
 }
 
 /// A state is plain doubles (contact/law.hpp): part after part is taken out of it.
@@ -105,6 +111,28 @@ void write_contacts(const contact::Contacts& contacts, h5::File& file) {
   });
 }
 
+/// Only where walls move.
+void write_walls(const assembly::State& state, h5::File& file) {
+  const auto& motions = state.model.wall_motions;
+  if (motions.empty()) return;
+  std::vector<std::int32_t> index;
+  std::vector<Vec3> centre;
+  std::vector<double> orientation;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const model::WallPose& pose = state.model.wall_poses[m];
+    index.push_back(motions[m].wall);
+    centre.push_back(pose.centre);
+    const Eigen::Quaterniond& q = pose.orientation;
+    orientation.insert(orientation.end(), {q.w(), q.x(), q.y(), q.z()});
+  }
+  file.add_group(layout::walls);
+  file.write(layout::wall_index, index);
+  file.write(layout::wall_centre, centre);
+  file.write_rows(layout::wall_orientation, h5::Number::f64, orientation.data(), motions.size(), 4);
+  file.set(layout::list, "wall_way", state.list.wall_way);
+  file.write(layout::list_wall_lever, state.list.wall_lever);
+}
+
 void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::root, "format", layout::format);
   file.set(layout::root, "schema", layout::schema);
@@ -118,6 +146,11 @@ void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::list, "skin", state.list.skin);
   file.set(layout::list, "rebuilds", state.list.rebuilds);
   file.write(layout::list_position, state.list.position);
+  write_walls(state, file);
+  if (!state.model.surfaces.empty()) {
+    file.add_group(layout::surfaces);
+    file.write(layout::surface_fingerprint, fingerprints(state.model.surfaces));
+  }
 }
 
 }  // namespace

@@ -55,8 +55,7 @@ TEST(History, ColumnsAreThoseOfTheHistory) {
   const TemporaryFolder folder;
   const model::History all{
       .file = "all.csv", .energies = true, .unbalanced = true, .walls = true, .balls = {1}};
-  std::vector<model::Plane> walls{{Vec3::Zero(), Vec3::UnitZ(), 0, "wall 1 (plane)"},
-                                  {Vec3::Zero(), Vec3::UnitX(), 0, "the \"left\", at x = 0"}};
+  const std::vector<std::string> walls{"wall 1 (plane)", "the \"left\", at x = 0"};
   test::SceneBuilder builder;
   builder.ball({0, 0, 5}).ball({1.5, 2, 3}).ball({-5, 0, 5});
   builder.scene().bodies.velocity = {Vec3::Zero(), {0.1, -2, 1e-300}, Vec3::Zero()};

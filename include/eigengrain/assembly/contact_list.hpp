@@ -31,6 +31,9 @@ enum class NewContacts {
 /// or no rule of the scene exists for a pair.
 void list_contacts(Model& model, const model::Scene& scene, double reach, NewContacts touching);
 
+/// Notes that the contacts of a state were listed for where everything is now.
+void begin_list(State& state);
+
 /// A new near list for a state in motion, from where its bodies are.
 void renew_list(State& state, double reach);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/moving_walls.hpp"
 
 #include <cstdint>
 #include <span>
@@ -23,6 +24,7 @@ struct Trial {
   std::span<const Vec3> spin;      ///< [bodies]; or empty: nothing turns
   double duration = 1;
   double per_second = 0;  ///< 1/Δt of a step in time; 0: nothing moves in time, and dashpots do nothing
+  const WallStep* walls = nullptr;  ///< how walls moved; null: all stand still
 
   contact::SideMotion side(std::int32_t body) const {
     const auto i = static_cast<std::size_t>(body);
@@ -30,12 +32,25 @@ struct Trial {
   }
 };
 
+/// Where the sides of contacts are in a trial state.
+inline contact::Placement placement_in(const Model& model, const Trial& trial) {
+  contact::Placement placement = model.placement(trial.position);
+  if (trial.walls != nullptr) {
+    placement.middle_walls = trial.walls->middle;
+    placement.middle_surfaces = trial.walls->middle_surfaces;
+  }
+  return placement;
+}
+
 /// The motion of a contact in a trial state, as its law wants it.
 template <class Kinematics, class Law>
 contact::ContactMotion motion_in(const Law& law, const contact::Placement& placement, const Trial& trial,
                                  const contact::Pair& pair, const contact::ContactGeometry& geometry) {
   contact::SideMotion second;
-  if constexpr (Kinematics::second_is_body) second = trial.side(pair.b);
+  if constexpr (Kinematics::second_is_body)
+    second = trial.side(pair.b);
+  else if (trial.walls != nullptr)
+    second = trial.walls->side[static_cast<std::size_t>(Kinematics::wall(placement, pair))];
   contact::ContactMotion motion =
       contact::motion_for<Kinematics>(law, placement, pair, geometry, trial.side(pair.a), second);
   if constexpr (contact::asks_rate<Law>) {
@@ -102,8 +117,17 @@ double elastic_energy(const Model& model, const Displacement& displacement);
 /// Elastic energy of all contacts of the model as it stands, J.
 double elastic_energy(const Model& model);
 
-/// Force of the bodies on each wall of the model as it stands [walls], N; with what dashpots did in the step
-/// that led there.
+/// What the bodies exert on a wall: force (N) and moment about its centre (N m); with what dashpots did in
+/// the step that led there.
+struct WallLoad {
+  Vec3 force = Vec3::Zero();
+  Vec3 moment = Vec3::Zero();
+};
+
+/// Load on each wall of the model as it stands [walls].
+std::vector<WallLoad> wall_loads(const Model& model);
+
+/// Force of the bodies on each wall of the model as it stands [walls], N.
 std::vector<Vec3> wall_forces(const Model& model);
 
 }  // namespace eigengrain::assembly

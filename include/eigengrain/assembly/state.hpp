@@ -9,11 +9,14 @@
 namespace eigengrain::assembly {
 
 /// Which pairs the contacts were listed for: all that were no more than `skin` apart when the bodies were at
-/// `position`. The list holds until some body has moved by half the skin.
+/// `position`. The list holds until some body, or some wall, has moved by half the skin.
 struct NeighbourList {
   double skin = 0;             ///< m
   std::vector<Vec3> position;  ///< [bodies] where they were when the list was made, m
   std::int64_t rebuilds = 0;   ///< lists made since the start
+  double wall_way = 0;         ///< how far any wall may have moved since, at the bodies, m
+  /// [wall_motions] the greatest distance of a body from the wall's centre while the list holds, m
+  std::vector<double> wall_lever;
 };
 
 /// A model in motion: all that the explicit cycle continues from, to the bit. Positions, contacts with their

@@ -4,6 +4,7 @@
 #include "eigengrain/contact/element.hpp"
 
 #include <concepts>
+#include <type_traits>
 #include <vector>
 
 namespace eigengrain::assembly {
@@ -29,6 +30,8 @@ void for_each_element(const Model& model, Listed which, const Visit& visit) {
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      // Of the facets near a ball only those that it can touch together, now.
+      if (std::is_same_v<Kinematics, contact::BallFacet> && !group.pairs[c].is_contact()) continue;
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
       contact::ContactMotion motion = contact::at_rest(geometry);
       if (!group.law.acts(motion, group.states[c])) {

@@ -26,7 +26,9 @@ assembly::State start(const model::Scene& scene);
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
-///   contacts            the list, where a body has moved by half the skin; forces from the new positions,
+///   walls               by the velocity that is given for the middle of the step
+///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
+///                       positions,
 ///   the
 ///                       increments v₊ Δt and the old history, which is committed at once
 ///
@@ -57,6 +59,7 @@ class Cycle {
   assembly::State state_;
   TimestepPolicy policy_;
   assembly::ContactForceSum forces_;
+  assembly::WallStep walls_;
 };
 
 }  // namespace eigengrain::cycle

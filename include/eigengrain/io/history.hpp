@@ -28,7 +28,9 @@ struct HistoryValues {
 
   Energies energies{};
   Unbalanced unbalanced{};
-  std::vector<Vec3> wall_forces{};  ///< [walls] N
+  std::vector<Vec3> wall_forces{};     ///< [walls] N
+  std::vector<Vec3> wall_moments{};    ///< [walls] about their centres, N m
+  std::vector<Vec3> wall_positions{};  ///< [walls] their centres, m
 };
 
 /// A table that a run writes (docs/scene-schema.md, `histories`): CSV with one line of names and units,
@@ -36,11 +38,11 @@ struct HistoryValues {
 /// lost none.
 class HistoryFile {
  public:
-  /// Opens FOLDER/<history.file>; a file that is there is replaced, or with `continue_from` taken over up to
-  /// the line of that step: what stands behind, and a line that was cut off, goes. Throws InputError where
-  /// the file is not the table of this history, or cannot be written.
+  /// walls: their names. Opens FOLDER/<history.file>; a file that is there is replaced, or with
+  /// `continue_from` taken over up to the line of that step: what stands behind, and a line that was cut off,
+  /// goes. Throws InputError where the file is not the table of this history, or cannot be written.
   HistoryFile(const std::filesystem::path& folder, const model::History& history,
-              std::span<const model::Plane> walls, std::optional<std::int64_t> continue_from = {});
+              std::span<const std::string> walls, std::optional<std::int64_t> continue_from = {});
 
   /// Whether the table wants a line of this step: the values of others need not be computed.
   bool due(std::int64_t step) const { return step % history_.every == 0; }
@@ -60,7 +62,7 @@ class HistoryFile {
   };
 
   void take_over(std::int64_t step);
-  std::string header(std::span<const model::Plane> walls) const;
+  std::string header(std::span<const std::string> walls) const;
   std::string line(const assembly::State& state, const HistoryValues& values);
   std::size_t row_of(std::int64_t identity, std::size_t hint, const model::Bodies& bodies) const;
   void write(std::string_view text);

@@ -3,7 +3,9 @@
 #include "eigengrain/base/vec.hpp"
 #include "eigengrain/model/bodies.hpp"
 #include "eigengrain/model/material.hpp"
+#include "eigengrain/model/surface.hpp"
 #include "eigengrain/model/surroundings.hpp"
+#include "eigengrain/model/wall_motion.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -55,6 +57,8 @@ struct History {
   bool energies = false;            ///< kinetic, elastic, gravitational
   bool unbalanced = false;          ///< mean and maximum of the ratio
   bool walls = false;               ///< force on each wall
+  bool wall_moments = false;        ///< moment on each wall about its centre
+  bool wall_positions = false;      ///< centre of each wall
   std::vector<std::int64_t> balls;  ///< identities: position, velocity, spin
 };
 
@@ -67,9 +71,11 @@ struct OutputChoice {
 struct Scene {
   std::string name;  ///< of the file, for messages
   std::vector<Material> materials;
-  std::vector<ContactRule> contacts;  ///< the first that matches a pair holds
-  Bodies bodies;                      ///< in the order in which the scene names them
-  std::vector<Plane> walls;
+  std::vector<ContactRule> contacts;     ///< the first that matches a pair holds
+  Bodies bodies;                         ///< in the order in which the scene names them
+  std::vector<Plane> walls;              ///< where they start
+  std::vector<Surface> surfaces;         ///< walls of triangles; numbered behind the planes
+  std::vector<WallMotion> wall_motions;  ///< of walls that move
   PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
   double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47

@@ -17,6 +17,8 @@ struct Plane {
   Vec3 normal;  ///< unit vector into the active side
   std::int32_t material = 0;
   std::string name;  ///< for messages, e.g. "wall 2 (-x)"
+  /// Where it turns about if it moves, and where moments on it are taken about, m.
+  Vec3 centre = Vec3::Zero();
 };
 
 /// Which copy of the periodic cell, in cell lengths along x, y, z.
