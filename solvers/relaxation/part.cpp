@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 namespace eigengrain::relaxation {
 namespace {
@@ -123,12 +124,13 @@ Part::Part(State& whole, std::span<const std::int32_t> movers) {
   }
 
   state_.settings = whole.settings;
-  state_.model = {.bodies = model::reordered(whole.model.bodies, bodies_),
-                  .walls = whole.model.walls,
-                  .cell = whole.model.cell,
-                  .gravity = whole.model.gravity,
-                  .local_damping = whole.model.local_damping,
-                  .contacts = {}};
+  // All of the model but what grows with the packing.
+  model::Bodies bodies = std::exchange(whole.model.bodies, {});
+  contact::Contacts contacts = std::exchange(whole.model.contacts, {});
+  state_.model = whole.model;
+  whole.model.bodies = std::move(bodies);
+  whole.model.contacts = std::move(contacts);
+  state_.model.bodies = model::reordered(whole.model.bodies, bodies_);
   whole.model.contacts.for_each_group(
       [&](const auto& group) { append(group, free, row_of, matching(state_.model.contacts, group)); });
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
