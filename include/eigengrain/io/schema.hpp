@@ -14,6 +14,7 @@ enum class KeyKind {
   section_list,  ///< a list of maps
   quantity,      ///< a number, perhaps with a unit
   vector,        ///< three quantities
+  quantities,    ///< a list of them
   integer,
   integers,  ///< a list of whole numbers
   flag,
