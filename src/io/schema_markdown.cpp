@@ -34,6 +34,8 @@ std::string value_text(const KeyDescription& key) {
       return fmt::format("three of {}", unit);
     case vectors:
       return fmt::format("list of three of {}", unit);
+    case quantities:
+      return fmt::format("list of {}", unit) + range;
     case integer:
       return "whole number" + range;
     case integers:

@@ -39,6 +39,8 @@ std::string wanted(const KeyDescription& key) {
       return "a list of three values";
     case KeyKind::vectors:
       return "a list of lists of three values";
+    case KeyKind::quantities:
+      return "a list of values";
     case KeyKind::integers:
       return "a list of whole numbers";
     case KeyKind::texts:
@@ -143,6 +145,17 @@ std::optional<std::vector<Vec3>> Section::vectors(std::string_view key) const {
     }
   }
   return result.size() == node->children.size() ? std::optional(result) : std::nullopt;
+}
+
+std::optional<std::vector<double>> Section::quantities(std::string_view key) const {
+  const Node* list = value(key, Node::Kind::list);
+  if (list == nullptr) return std::nullopt;
+  std::vector<double> result;
+  for (std::size_t k = 0; k < list->children.size(); ++k) {
+    const auto number = read_number(list->children[k], fmt::format("{}[{}]", path_of(key), k), describe(key));
+    if (number) result.push_back(*number);
+  }
+  return result.size() == list->children.size() ? std::optional(result) : std::nullopt;
 }
 
 std::optional<std::int64_t> Section::integer(std::string_view key) const {

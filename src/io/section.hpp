@@ -32,6 +32,7 @@ class Section {
   std::optional<double> quantity(std::string_view key) const;
   std::optional<Vec3> vector(std::string_view key) const;
   std::optional<std::vector<Vec3>> vectors(std::string_view key) const;
+  std::optional<std::vector<double>> quantities(std::string_view key) const;
   std::optional<std::int64_t> integer(std::string_view key) const;
   /// A list of whole numbers; a single one counts as a list.
   std::optional<std::vector<std::int64_t>> integers(std::string_view key) const;

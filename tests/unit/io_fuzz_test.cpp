@@ -22,6 +22,7 @@ contacts:
 balls:
   - {file: packing.txt, material: grain}
   - {position: [0.1, 0.1, 0.2], radius: 5 mm, material: grain, fix: [x, wy], velocity: [1, 0, 0], spin: [0, 1, 0]}
+  - {lattice: bcc, radius: 20 mm, overlap: 10 um, box: {min: [0.02, 0.02, 0.1], max: [0.2, 0.2, 0.2]}, material: grain}
 walls:
   - {plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}
   - {box: {min: [0, 0, 0], max: [0.21, 0.21, 0.254], open: [-x, +x, +z]}, material: steel}

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 namespace eigengrain::io {
 namespace {
 
@@ -97,6 +100,25 @@ TEST(Packing, AFileAloneThrowsItsMistakes) {
     EXPECT_EQ(error.mistakes().size(), 2U);
   }
   EXPECT_THROW(read_packing_file(folder.path() / "none.txt"), InputError);
+}
+
+TEST(Packing, WhatIsWrittenIsReadBackToTheBit) {
+  const TemporaryFolder folder;
+  std::vector<Vec3> centres{{0.1, -1e-300, 1e300}, {1.0 / 3, 5e-324, -0.0}};
+  std::vector<double> radii{0x1.fffffffffffffp-1, 1e-5};
+  std::mt19937_64 random(1);
+  for (int k = 0; k < 1000; ++k) {
+    const auto number = [&] { return std::ldexp(static_cast<double>(random() >> 11U), -53); };
+    centres.emplace_back(number(), number(), -number());
+    radii.push_back(number());
+  }
+  const auto file = folder.path() / "packing.txt";
+  write_packing_file(centres, radii, "two lines\nof comment", file);
+  const Packing packing = read_packing_file(file);
+  EXPECT_EQ(packing.position, centres);
+  EXPECT_EQ(packing.radius, radii);
+  EXPECT_EQ(packing.line.front(), 3);
+  EXPECT_THROW(write_packing_file(centres, radii, "", folder.path() / "none" / "p.txt"), InputError);
 }
 
 }  // namespace

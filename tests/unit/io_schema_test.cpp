@@ -45,6 +45,21 @@ std::vector<std::string> scenes_with_room() {
   const std::string materials = "materials: [{name: grain, density: 2500}]\n";
   const std::string ball = "balls: [{position: [0.1, 0.1, 0.1], radius: 5 mm, material: grain}]\n";
   const std::string file = "balls: [{file: packing.txt, material: grain}]\n";
+  const std::string lattice =
+      "balls: [{lattice: fcc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.1, 0.1, 0.1]}, material: grain}]\n";
+  const auto fill = [](const std::string& how) {
+    return "balls: [{fill: " + how + ", box: {min: [0, 0, 0], max: [0.1, 0.1, 0.1]}, material: grain}]\n";
+  };
+  const std::string loose = fill("random, fraction: 0.1, radius: 5 mm");
+  const std::string dense = fill("dense, mean_overlap: 1e-3, radius: 15 mm");
+  const auto sizes = [&](const std::string& how) {
+    return fill("random, fraction: 0.1, sizes: {distribution: " + how + "}");
+  };
+  const std::string uniform = sizes("uniform, min: 4 mm, max: 6 mm");
+  const std::string normal = sizes("normal, mean: 5 mm, deviation: 0.5 mm");
+  const std::string power = sizes("power, exponent: 2, min: 4 mm, max: 6 mm");
+  const std::string shares = sizes("table, radii: [4 mm, 6 mm], shares: [1, 1]");
+  const std::string passing = sizes("table, radii: [4 mm, 6 mm], passing: [0, 1]");
   const std::string plane = "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]\n";
   const std::string box = "walls: [{box: {min: [0, 0, 0], max: [1, 1, 1]}, material: grain}]\n";
   const std::string carried =
@@ -62,6 +77,14 @@ std::vector<std::string> scenes_with_room() {
   const std::string no_law = "contacts: [{between: [grain, grain], law: none}]\n";
   std::vector<std::string> scenes{materials + no_law + ball,
                                   materials + no_law + file + fixed,
+                                  materials + no_law + lattice,
+                                  materials + no_law + loose,
+                                  materials + no_law + dense,
+                                  materials + no_law + uniform,
+                                  materials + no_law + normal,
+                                  materials + no_law + power,
+                                  materials + no_law + shares,
+                                  materials + no_law + passing,
                                   materials + no_law + ball + plane,
                                   materials + no_law + ball + box,
                                   materials + no_law + ball + carried,

@@ -15,6 +15,7 @@ enum class KeyKind {
   quantity,      ///< a number, perhaps with a unit
   vector,        ///< three quantities
   vectors,       ///< a list of vectors
+  quantities,    ///< a list of them
   integer,
   integers,  ///< a list of whole numbers
   flag,

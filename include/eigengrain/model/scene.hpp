@@ -84,7 +84,7 @@ struct Scene {
   std::vector<History> histories;
   OutputChoice outputs;
   std::string document;  ///< what the file and the overrides said, without the balls, as a scene document
-  std::vector<std::string> notes;  ///< what the reader found odd, though it is no mistake
+  std::vector<std::string> notes;  ///< what the reader made, or found odd though it is no mistake
 
   /// Index into `contacts` of the rule for two materials, or -1.
   std::int32_t rule_for(std::int32_t material_a, std::int32_t material_b) const {
