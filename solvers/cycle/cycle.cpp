@@ -121,7 +121,7 @@ void Cycle::choose_timestep() {
 void Cycle::step() {
   const double dt = state_.next_dt;
   const double half_skin = 0.5 * state_.list.skin;
-  if (walls_.any()) walls_.move(state_, dt);
+  if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
   const double way = move(0.5 * (state_.dt + dt), dt);
   const bool expired = !(way <= half_skin * half_skin && state_.list.wall_way <= half_skin);
   if (expired) list_anew();

@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/energies.hpp"
 #include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/io/state_file.hpp"
 
 #include <algorithm>
@@ -33,15 +34,8 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
       values.wall_forces.push_back(load.force);
       values.wall_moments.push_back(load.moment);
     }
-  if (history.wall_positions)
-    for (const model::Plane& wall : state.model.walls) values.wall_positions.push_back(wall.centre);
+  if (history.wall_positions) values.wall_positions = assembly::wall_centres(state.model);
   return values;
-}
-
-std::vector<std::string> wall_names(const assembly::Model& model) {
-  std::vector<std::string> names;
-  for (const model::Plane& wall : model.walls) names.push_back(wall.name);
-  return names;
 }
 
 }  // namespace
@@ -50,15 +44,18 @@ RunOutputs::RunOutputs(const Input& input)
     : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
   const std::int64_t step = input.state.step;
   if (choice_.series_every > 0) {
-    series_.emplace(input.folder, input.stem);
-    if (input.continued && std::filesystem::exists(series_->list_file())) series_->continue_from(step);
+    series_.emplace_back(input.folder, input.stem);
+    if (!input.state.model.surfaces.empty())
+      series_.emplace_back(input.folder, input.stem + "_walls", io::Series::Of::surfaces);
+    for (io::Series& series : series_)
+      if (input.continued && std::filesystem::exists(series.list_file())) series.continue_from(step);
   }
   for (model::History history : input.state.settings.histories) {
     // A state with a name of its own, as relax makes it, is another run: its tables stand beside the scene's.
     if (input.stem != std::filesystem::path(input.state.settings.name).stem())
       history.file = input.stem + "-" + history.file;
     const bool there = input.continued && std::filesystem::exists(input.folder / history.file);
-    histories_.emplace_back(input.folder, history, wall_names(input.state.model),
+    histories_.emplace_back(input.folder, history, assembly::wall_names(input.state.model),
                             there ? std::optional(step) : std::nullopt);
   }
 }
@@ -72,7 +69,8 @@ std::int64_t RunOutputs::next(std::int64_t step) const {
 }
 
 void RunOutputs::write_due(const State& state) {
-  if (series_ && state.step % choice_.series_every == 0) series_->add(state);
+  if (choice_.series_every > 0 && state.step % choice_.series_every == 0)
+    for (io::Series& series : series_) series.add(state);
   for (io::HistoryFile& history : histories_)
     if (history.due(state.step)) history.add(state, values_for(history.history(), state));
 }

@@ -34,7 +34,7 @@ class RunOutputs {
   model::OutputChoice choice_;
   std::filesystem::path state_file_;
   std::int64_t saved_step_ = 0;
-  std::optional<io::Series> series_;
+  std::deque<io::Series> series_;  ///< balls; and surfaces, if there are any
   std::deque<io::HistoryFile> histories_;
 };
 

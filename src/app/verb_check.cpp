@@ -1,4 +1,5 @@
 #include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 
 #include "input.hpp"
@@ -66,7 +67,10 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
     parts.push_back(
         fmt::format("contact history ({})", groups.empty() ? "nothing touches" : "no law needs one"));
   if (!model.cell.any()) parts.emplace_back("periodic images");
-  if (model.walls.empty()) parts.emplace_back("walls");
+  if (model.wall_count() == 0)
+    parts.emplace_back("walls");
+  else if (model.wall_motions.empty())
+    parts.emplace_back("motion of walls");
   if (scene.gravity.isZero(0)) parts.emplace_back("gravity");
   if (scene.local_damping == 0) parts.emplace_back("damping");
   return parts;
@@ -145,7 +149,7 @@ ordered_json to_json(const Report& report) {
                       {"contacts", g.contacts},
                       {"history_bytes", g.history_bytes}});
   return {{"bodies", report.model.bodies.size()},
-          {"walls", report.model.walls.size()},
+          {"walls", report.model.wall_count()},
           {"contacts", report.system.elements.size()},
           {"unknowns", report.free},
           {"translations", report.unknowns.blocks() - report.unknowns.rotations()},
@@ -167,7 +171,7 @@ void print(const Report& report) {
   fmt::print("{} is in order. The model will consist of\n", report.scene.name);
   fmt::print("  bodies      {}, {}\n", counted(report.model.bodies.size(), "ball", "balls"),
              radii_text(report.model.bodies));
-  for (const model::Plane& wall : report.model.walls) fmt::print("  wall        {}\n", wall.name);
+  for (const std::string& wall : assembly::wall_names(report.model)) fmt::print("  wall        {}\n", wall);
   for (const GroupSummary& g : report.groups)
     fmt::print(
         "  contacts    {} {}, {} by {}, {}\n", grouped(g.contacts), g.kinematics, g.law,

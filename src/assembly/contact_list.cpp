@@ -1,6 +1,9 @@
 #include "eigengrain/assembly/contact_list.hpp"
 
+#include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/error.hpp"
+#include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/facet_choice.hpp"
 #include "eigengrain/search/candidates.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +13,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace eigengrain::assembly {
@@ -112,6 +117,125 @@ bool precedes(const Pair& left, const Pair& right) {
   return std::tie(left.a, left.b, left.image) < std::tie(right.a, right.b, right.image);
 }
 
+/// The facets of a surface, or of its periodic images, that a ball is near to, with sides and choice made.
+class FacetSearch {
+ public:
+  /// radii  [surfaces] about their centres, m
+  /// known  the pairs with facets that were listed before, sorted: they know on which side their ball is
+  FacetSearch(const Model& model, std::span<const double> radii, std::span<const Pair> known, double reach)
+      : model_(model), placement_(model.placement()), radius_(radii), known_(known), reach_(reach) {}
+
+  void search(std::int32_t body, std::size_t surface, std::vector<Pair>& result) {
+    const auto first = static_cast<std::ptrdiff_t>(result.size());
+    const auto ball = static_cast<std::size_t>(body);
+    const double range = model_.bodies.radius[ball] + reach_;
+    const contact::SurfacePlace& place = model_.surface_places[surface];
+    for_each_image(model_.bodies.position[ball] - place.pose.centre, radius_[surface] + range,
+                   [&](const model::Image& image) {
+                     Pair pair{body, 0, image};
+                     const Vec3 x = place.to_local(model_.bodies.position[ball] - model_.cell.shift(image));
+                     found_.clear();
+                     model_.facet_trees[surface].near(x, range, found_);
+                     for (const std::int32_t facet : found_) {
+                       pair.b = facet;
+                       const auto& f = model_.facets.facet[static_cast<std::size_t>(facet)];
+                       if ((contact::nearest_point(x, f).point - x).norm() <= range) result.push_back(pair);
+                     }
+                   });
+    if (std::ssize(result) == first) return;
+    std::sort(result.begin() + first, result.end(), precedes);
+    for (auto pair = result.begin() + first; pair != result.end(); ++pair) {
+      const auto same = std::lower_bound(known_.begin(), known_.end(), *pair, precedes);
+      if (same != known_.end() && !precedes(*pair, *same)) pair->side = same->side;
+    }
+    directions_.resize(result.size());
+    contact::choose_facets(placement_, std::span(result).subspan(static_cast<std::size_t>(first)),
+                           directions_);
+  }
+
+ private:
+  /// Calls visit for the images of a surface within `range` of its centre that may be near.
+  template <class Visit>
+  void for_each_image(const Vec3& apart, double range, const Visit& visit) const {
+    std::array<int, 3> low{};
+    std::array<int, 3> high{};
+    constexpr double most = 127;
+    for (int k = 0; k < 3; ++k) {
+      if (!model_.cell.periodic[static_cast<std::size_t>(k)]) continue;
+      const double length = model_.cell.lengths[k];
+      low[static_cast<std::size_t>(k)] =
+          static_cast<int>(std::max(-most, std::ceil((apart[k] - range) / length)));
+      high[static_cast<std::size_t>(k)] =
+          static_cast<int>(std::min(most, std::floor((apart[k] + range) / length)));
+    }
+    for (int i = low[0]; i <= high[0]; ++i)
+      for (int j = low[1]; j <= high[1]; ++j)
+        for (int k = low[2]; k <= high[2]; ++k)
+          visit(model::Image{static_cast<std::int8_t>(i), static_cast<std::int8_t>(j),
+                             static_cast<std::int8_t>(k)});
+  }
+
+  const Model& model_;
+  contact::Placement placement_;
+  std::span<const double> radius_;
+  std::span<const Pair> known_;
+  double reach_;
+  std::vector<std::int32_t> found_;
+  std::vector<Vec3> directions_;
+};
+
+/// The greatest distance of each surface from its centre, m.
+std::vector<double> surface_radii(const Model& model) {
+  std::vector<double> radii;
+  for (const model::Surface& surface : model.surfaces) {
+    double radius = 0;
+    for (const Vec3& x : surface.vertices) radius = std::max(radius, (x - surface.centre).norm());
+    radii.push_back(radius);
+  }
+  return radii;
+}
+
+/// All pairs with facets, sorted.
+std::vector<Pair> facet_pairs(const contact::Contacts& contacts) {
+  std::vector<Pair> pairs;
+  contacts.for_each_group([&](const auto& group) {
+    if constexpr (std::is_same_v<typename std::decay_t<decltype(group)>::KinematicsType, contact::BallFacet>)
+      pairs.insert(pairs.end(), group.pairs.begin(), group.pairs.end());
+  });
+  std::sort(pairs.begin(), pairs.end(), precedes);
+  return pairs;
+}
+
+PairsByRule ball_facet_pairs(const model::Scene& scene, const Model& model, const contact::Contacts& before,
+                             double reach) {
+  PairsByRule result(scene);
+  if (model.surfaces.empty()) return result;
+  constexpr std::int64_t chunk_size = 1024;
+  const std::vector<double> radii = surface_radii(model);
+  const std::vector<Pair> known = facet_pairs(before);
+  const std::int64_t bodies = model.bodies.size();
+  std::vector<std::vector<Pair>> chunks(static_cast<std::size_t>((bodies + chunk_size - 1) / chunk_size));
+  try {
+    for_chunks(bodies, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+      std::vector<Pair> found;
+      FacetSearch search(model, radii, known, reach);
+      for (std::int64_t body = begin; body < end; ++body)
+        for (std::size_t s = 0; s < model.surfaces.size(); ++s)
+          search.search(static_cast<std::int32_t>(body), s, found);
+      chunks[static_cast<std::size_t>(chunk)] = std::move(found);
+    });
+  } catch (const contact::CentreOnFacet& found) {
+    throw centre_on_facet(model, found);
+  }
+  for (const std::vector<Pair>& found : chunks)
+    for (const Pair& pair : found) {
+      const model::Facet& facet = model.facets.facet[static_cast<std::size_t>(pair.b)];
+      result.add(pair, model.bodies.material[static_cast<std::size_t>(pair.a)],
+                 model.surfaces[static_cast<std::size_t>(facet.surface)].material);
+    }
+  return result;
+}
+
 /// Fills an empty group from the pairs found and the group that was there before; both are sorted.
 template <class Group>
 void fill(Group& group, const Group* before, const std::vector<Pair>& found, const Model& model,
@@ -143,9 +267,10 @@ void fill(Group& group, const Group* before, const std::vector<Pair>& found, con
   };
   for (const Pair& pair : found) {
     keep_lost_until(&pair);
-    if (old < olds && !precedes(pair, before->pairs[old]))
-      add(pair, before->states[old++]);
-    else
+    if (old < olds && !precedes(pair, before->pairs[old])) {
+      add(before->pairs[old], before->states[old]);
+      ++old;
+    } else
       add_new(pair);
   }
   keep_lost_until(nullptr);
@@ -194,6 +319,11 @@ void wrap(Model& model) {
       for (Pair& pair : group.pairs)
         for (std::size_t k = 0; k < 3; ++k)
           pair.image[k] = static_cast<std::int8_t>(pair.image[k] + moved[pair.b][k] - moved[pair.a][k]);
+    } else if constexpr (std::is_same_v<typename std::decay_t<decltype(group)>::KinematicsType,
+                                        contact::BallFacet>) {
+      for (Pair& pair : group.pairs)
+        for (std::size_t k = 0; k < 3; ++k)
+          pair.image[k] = static_cast<std::int8_t>(pair.image[k] - moved[pair.a][k]);
     }
   });
 }
@@ -245,6 +375,8 @@ void list_contacts(Model& model, const model::Scene& scene, double reach, NewCon
                                touching);
   list_kind<contact::BallPlane>(ball_wall_pairs(scene, model, reach), scene, before, model, touching_only,
                                 touching);
+  list_kind<contact::BallFacet>(ball_facet_pairs(scene, model, before, reach), scene, before, model,
+                                touching_only, touching);
 }
 
 void begin_list(State& state) {

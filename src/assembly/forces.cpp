@@ -1,7 +1,9 @@
 #include "eigengrain/assembly/forces.hpp"
 
+#include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/facet_choice.hpp"
 
 #include <algorithm>
 
@@ -73,6 +75,11 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
                                 const Trial& trial, BodyForces& sum) {
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using ContactState = typename std::decay_t<Group>::State;
+  if constexpr (commit && std::is_same_v<Kinematics, contact::BallFacet>)
+    for_chunks(std::ssize(sum.force), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
+      contact::follow_facets(placement, group, static_cast<std::size_t>(plan.starts[chunk]),
+                             static_cast<std::size_t>(plan.starts[chunk + 1]));
+    });
   // Flat: the small functions of kinematics and laws are many, and calls among them pass everything through
   // memory.
   const auto one_chunk = [&](std::int64_t, std::int64_t, std::int64_t chunk) __attribute__((flatten)) {
@@ -143,10 +150,14 @@ void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForce
 }
 
 void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum) {
-  if (turns_)
-    sum_groups<true, true>(model, trial, sum);
-  else
-    sum_groups<false, true>(model, trial, sum);
+  try {
+    if (turns_)
+      sum_groups<true, true>(model, trial, sum);
+    else
+      sum_groups<false, true>(model, trial, sum);
+  } catch (const contact::CentreOnFacet& found) {
+    throw centre_on_facet(model, found);
+  }
 }
 
 BodyForces contact_forces(const Model& model, const Displacement& displacement) {
@@ -187,7 +198,7 @@ double elastic_energy(const Model& model) {
 }
 
 std::vector<WallLoad> wall_loads(const Model& model) {
-  std::vector<WallLoad> loads(model.walls.size());
+  std::vector<WallLoad> loads(model.wall_count());
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Group = std::decay_t<decltype(group)>;

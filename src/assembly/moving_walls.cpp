@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/moving_walls.hpp"
 
+#include "eigengrain/assembly/servo.hpp"
 #include "eigengrain/assembly/state.hpp"
 
 #include <algorithm>
@@ -14,35 +15,51 @@ std::vector<model::WallPose> start_poses(std::span<const model::WallMotion> moti
 
 WallStep::WallStep(const Model& model) {
   if (model.wall_motions.empty()) return;
-  side.resize(model.walls.size());
+  side.resize(model.wall_count());
   middle = model.walls;
+  middle_surfaces = model.surface_places;
 }
+
+namespace {
+
+/// Puts the wall of a motion where the pose says, among the given planes and surfaces.
+void carry(const State& state, const model::WallMotion& motion, const model::WallPose& pose,
+           std::vector<model::Plane>& planes, std::vector<contact::SurfacePlace>& surfaces) {
+  const auto w = static_cast<std::size_t>(motion.wall);
+  if (w < planes.size()) {
+    model::carry(state.settings.walls[w], motion, pose, planes[w]);
+  } else {
+    surfaces[w - planes.size()].pose = pose;
+    surfaces[w - planes.size()].moved = true;
+  }
+}
+
+}  // namespace
 
 void WallStep::move(State& state, double dt) {
   Model& model = state.model;
+  const std::vector<double> speeds = servo_speeds(model, dt);
   double farthest = 0;
   for (std::size_t m = 0; m < model.wall_motions.size(); ++m) {
     const model::WallMotion& motion = model.wall_motions[m];
     model::WallPose& pose = model.wall_poses[m];
-    const auto w = static_cast<std::size_t>(motion.wall);
-    const model::WallVelocity velocity = motion.at(state.time + 0.5 * dt);
-    side[w] = {dt * velocity.translation, dt * velocity.spin};
-    model::carry(state.settings.walls[w], motion,
-                 pose.moved(0.5 * side[w].translation, 0.5 * side[w].rotation), middle[w]);
-    pose = pose.moved(side[w].translation, side[w].rotation);
-    model::carry(state.settings.walls[w], motion, pose, model.walls[w]);
+    contact::SideMotion& moved = side[static_cast<std::size_t>(motion.wall)];
+    model::WallVelocity velocity = motion.at(state.time + 0.5 * dt);
+    if (motion.servo) velocity.translation += speeds[m] * motion.servo->direction;
+    moved = {dt * velocity.translation, dt * velocity.spin};
+    carry(state, motion, pose.moved(0.5 * moved.translation, 0.5 * moved.rotation), middle, middle_surfaces);
+    pose = pose.moved(moved.translation, moved.rotation);
+    carry(state, motion, pose, model.walls, model.surface_places);
     farthest =
-        std::max(farthest, side[w].translation.norm() + side[w].rotation.norm() * state.list.wall_lever[m]);
+        std::max(farthest, moved.translation.norm() + moved.rotation.norm() * state.list.wall_lever[m]);
   }
   state.list.wall_way += farthest;
 }
 
 void place_walls(State& state) {
   Model& model = state.model;
-  for (std::size_t m = 0; m < model.wall_motions.size(); ++m) {
-    const auto w = static_cast<std::size_t>(model.wall_motions[m].wall);
-    model::carry(state.settings.walls[w], model.wall_motions[m], model.wall_poses[m], model.walls[w]);
-  }
+  for (std::size_t m = 0; m < model.wall_motions.size(); ++m)
+    carry(state, model.wall_motions[m], model.wall_poses[m], model.walls, model.surface_places);
 }
 
 }  // namespace eigengrain::assembly

@@ -34,22 +34,21 @@ Mat3x12 relative_rotation() {
 
 }  // namespace
 
-Mat12 consistent_tangent(const ContactGeometry& geometry, double curvature, const ContactForce& force,
+Mat12 consistent_tangent(const ContactGeometry& geometry, const Mat3& curvature, const ContactForce& force,
                          const ContactTangent& tangent) {
   const Vec3& n = geometry.normal;
   const Mat3 along = n * n.transpose();
-  const Mat3 across = Mat3::Identity() - along;
   const Mat3x12 delta_branch = branch();
 
   Mat3x12 delta = delta_branch;  // δ of the contact point
   delta.block<3, 3>(0, theta_a) = cross_matrix(geometry.lever_a);
   delta.block<3, 3>(0, theta_b) = -cross_matrix(geometry.lever_b);
-  const Mat3x12 frame = curvature * cross_matrix(n) * delta_branch + along * mean_rotation();  // Ω
+  const Mat3x12 frame = cross_matrix(n) * curvature * delta_branch + along * mean_rotation();  // Ω
 
   const Mat3x12 d_force = -tangent.translation * delta - cross_matrix(force.force) * frame;
   const Mat3x12 d_moment = -tangent.rotation * relative_rotation() - cross_matrix(force.moment) * frame;
   const auto moving_lever = [&](const Vec3& lever, double half) -> Mat3x12 {
-    return (half * along + lever.dot(n) * curvature * across) * delta_branch;
+    return (half * along + lever.dot(n) * curvature) * delta_branch;
   };
   const auto d_end_moment = [&](const Vec3& lever, double half) -> Mat3x12 {  // d(R × F + M)
     return cross_matrix(lever) * d_force - cross_matrix(force.force) * moving_lever(lever, half) + d_moment;

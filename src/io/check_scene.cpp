@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace eigengrain::io {
@@ -47,6 +48,8 @@ std::set<MaterialPair> meeting_pairs(const model::Scene& scene) {
     for (std::int32_t b = a + 1; b < count; ++b)
       if (balls_of(b) > 0) pairs.insert({a, b});
     for (const model::Plane& wall : scene.walls)
+      if (wall.material >= 0) pairs.insert(std::minmax(a, wall.material));
+    for (const model::Surface& wall : scene.surfaces)
       if (wall.material >= 0) pairs.insert(std::minmax(a, wall.material));
   }
   return pairs;
@@ -122,6 +125,31 @@ void check_coincidence(const SceneDraft& draft, Diagnostics& diagnostics) {
   }
 }
 
+/// Longest side of the box around points, m.
+double extent_of(std::span<const Vec3> points) {
+  Vec3 low = points.front();
+  Vec3 high = points.front();
+  for (const Vec3& x : points) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  return (high - low).maxCoeff();
+}
+
+/// A surface in a wrong unit is a thousand times too large or too small.
+void note_size(const model::Surface& surface, model::Scene& scene) {
+  if (scene.bodies.radius.empty()) return;  // of a state
+  const auto [least, most] = std::minmax_element(scene.bodies.radius.begin(), scene.bodies.radius.end());
+  const double size = extent_of(surface.vertices);
+  const double balls = extent_of(scene.bodies.position) + 2 * *most;
+  const bool large = size > 300 * balls && size > 3000 * *most;
+  if (large || size < 0.03 * *least)
+    scene.notes.push_back(
+        fmt::format("{} is {:.3g} m in size, and the balls, of radius {:.3g} to {:.3g} m, "
+                    "take {:.3g} m; is its unit right?",
+                    surface.name, size, *least, *most, balls));
+}
+
 }  // namespace
 
 void add_notes(SceneDraft& draft) {
@@ -132,6 +160,7 @@ void add_notes(SceneDraft& draft) {
         scene.notes.push_back(
             fmt::format("{} and {} lie in one plane: balls there touch both, so they count twice",
                         scene.walls[first].name, scene.walls[second].name));
+  for (const model::Surface& surface : scene.surfaces) note_size(surface, scene);
 }
 
 void check_scene(const Section& root, const SceneDraft& draft) {

@@ -91,6 +91,11 @@ struct Row<std::int32_t> {
   static constexpr int components = 1;
 };
 template <>
+struct Row<std::int8_t> {
+  static constexpr Number number = Number::i8;
+  static constexpr int components = 1;
+};
+template <>
 struct Row<Vec3> {
   static constexpr Number number = Number::f64;
   static constexpr int components = 3;

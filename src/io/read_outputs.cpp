@@ -57,7 +57,7 @@ bool read_columns(const Section& section, const SceneDraft& draft, model::Histor
   history.wall_positions = wanted("wall_positions");
   history.balls = *balls;
   const bool of_walls = history.walls || history.wall_moments || history.wall_positions;
-  if (of_walls && draft.scene.walls.empty() && draft.walls_complete)
+  if (of_walls && draft.scene.walls.empty() && draft.scene.surfaces.empty() && draft.walls_complete)
     section.report("of", "walls, and the scene has none; remove the word, or add walls");
   check_balls(section, *balls, draft);
   return true;

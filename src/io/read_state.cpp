@@ -1,8 +1,10 @@
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/moving_walls.hpp"
+#include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/io/state_file.hpp"
 
+#include "fingerprint.hpp"
 #include "hdf5.hpp"
 #include "restore_contacts.hpp"
 #include "seal.hpp"
@@ -92,11 +94,22 @@ void read_list(const h5::File& hdf5, assembly::State& state) {
       hdf5.read<Vec3>(layout::list_position, rows == 0 ? 0 : state.model.bodies.position.size());
 }
 
+/// The settings name files of meshes, which may have changed since.
+void refuse_changed_meshes(const h5::File& hdf5, const model::Scene& stored, const fs::path& file) {
+  if (!hdf5.has(layout::surfaces)) return;
+  const std::vector<std::int64_t> now = fingerprints(stored.surfaces);
+  const auto then = hdf5.read<std::int64_t>(layout::surface_fingerprint, now.size());
+  for (std::size_t s = 0; s < now.size(); ++s)
+    if (now[s] != then[s])
+      refuse(file,
+             fmt::format("{}: its file has other triangles than when the state was written, and contacts "
+                         "name them by number; put the file back, or start from the scene",
+                         stored.surfaces[s].name));
+}
+
 /// Puts the walls that had moved where they were. Others that move now begin where the settings say.
 void read_walls(const h5::File& hdf5, const fs::path& file, assembly::State& state) {
   assembly::Model& model = state.model;
-  model.wall_motions = state.settings.wall_motions;
-  model.wall_poses = assembly::start_poses(model.wall_motions);
   if (!hdf5.has(layout::walls)) return;
   const std::size_t count = hdf5.rows(layout::wall_index);
   const auto index = hdf5.read<std::int32_t>(layout::wall_index, count);
@@ -133,6 +146,15 @@ void refuse_changes(const model::Scene& stored, const model::Scene& now, const f
     refuse(file, fmt::format("walls: {} planes; the state has {}, and its contacts name them by number; keep "
                              "their number and their order",
                              now.walls.size(), stored.walls.size()));
+  const auto triangles = [](const model::Scene& scene) {
+    std::vector<std::size_t> counts;
+    for (const model::Surface& surface : scene.surfaces) counts.push_back(surface.triangles.size());
+    return counts;
+  };
+  if (triangles(now) != triangles(stored))
+    refuse(file,
+           "walls: other polygons or meshes than those of the state, whose contacts name their "
+           "triangles by number; keep them");
   if (now.cell.periodic != stored.cell.periodic)
     refuse(file, "periodic: other axes than those of the state, whose contacts reach through them");
 }
@@ -145,7 +167,11 @@ bool same_place(const model::Plane& first, const model::Plane& second) {
 bool surroundings_moved(const model::Scene& stored, const model::Scene& now) {
   return now.cell.origin != stored.cell.origin || now.cell.lengths != stored.cell.lengths ||
          !std::equal(now.walls.begin(), now.walls.end(), stored.walls.begin(), stored.walls.end(),
-                     same_place);
+                     same_place) ||
+         !std::equal(now.surfaces.begin(), now.surfaces.end(), stored.surfaces.begin(), stored.surfaces.end(),
+                     [](const model::Surface& l, const model::Surface& r) {
+                       return l.vertices == r.vertices && l.two_sided == r.two_sided && l.centre == r.centre;
+                     });
 }
 
 /// Whether pairs may have a law that had none: those are not in the list.
@@ -159,7 +185,10 @@ bool pairs_may_be_new(const model::Scene& stored, const model::Scene& now) {
   return !std::equal(now.contacts.begin(), now.contacts.end(), stored.contacts.begin(), stored.contacts.end(),
                      same_rule) ||
          !std::equal(now.walls.begin(), now.walls.end(), stored.walls.begin(), stored.walls.end(),
-                     same_material);
+                     same_material) ||
+         !std::equal(
+             now.surfaces.begin(), now.surfaces.end(), stored.surfaces.begin(), stored.surfaces.end(),
+             [](const model::Surface& l, const model::Surface& r) { return l.material == r.material; });
 }
 
 model::Scene read_settings(const std::string& document, const fs::path& file,
@@ -183,12 +212,10 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   const model::Scene stored = read_settings(document, file, {}, state.model.bodies);
   state.settings = read_settings(document, file, overrides, state.model.bodies);
   state.settings.name = hdf5.text(layout::root, "scene");
+  refuse_changed_meshes(hdf5, stored, file);
   refuse_changes(stored, state.settings, file);
-  state.model.walls = state.settings.walls;
+  assembly::set_surroundings(state.model, state.settings);
   read_walls(hdf5, file, state);
-  state.model.cell = state.settings.cell;
-  state.model.gravity = state.settings.gravity;
-  state.model.local_damping = state.settings.local_damping;
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());
   if (surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings))
     assembly::renew_list(state, state.list.skin);

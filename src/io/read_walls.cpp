@@ -1,3 +1,4 @@
+#include "read_surfaces.hpp"
 #include "scene_draft.hpp"
 #include "wall_motion_keys.hpp"
 
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace eigengrain::io {
 namespace {
@@ -20,19 +22,34 @@ struct WallEntry {
   SceneDraft& draft;
   WallMotionKeys motion;
 
-  /// centre: where the entry says none
-  void add(const Vec3& point, const Vec3& normal, std::string_view what, const Vec3& centre) const {
+  /// centre: where the entry says none; area: 0 without an own
+  void add(const Vec3& point, const Vec3& normal, std::string_view what, const Vec3& centre,
+           double area) const {
     const auto index = static_cast<std::int32_t>(draft.scene.walls.size());
     draft.scene.walls.push_back(
         {point, normal, material, fmt::format("wall {} ({})", number, what), motion.centre.value_or(centre)});
     draft.wall_places.push_back(section.place());
-    if (!motion.moves()) return;
-    draft.scene.wall_motions.push_back(
-        {index, draft.scene.walls.back().centre, motion.time, motion.velocity});
+    add_motion(index, draft.scene.walls.back().centre, normal, area);
     check_turn_against_cell(normal);
   }
 
+  /// normal, area: zero without an own
+  void add(model::Surface surface, std::string_view what, const Vec3& normal, double area) const {
+    surface.material = material;
+    surface.name = fmt::format("wall {} ({})", number, what);
+    surface.centre = motion.centre.value_or(middle_of(surface));
+    // Until the planes have been counted: -1, -2, ...
+    const auto index = -1 - static_cast<std::int32_t>(draft.scene.surfaces.size());
+    add_motion(index, surface.centre, normal, area);
+    draft.scene.surfaces.push_back(std::move(surface));
+  }
+
  private:
+  void add_motion(std::int32_t index, const Vec3& centre, const Vec3& normal, double area) const {
+    if (auto given = wall_motion(section, motion, index, centre, normal, area))
+      draft.scene.wall_motions.push_back(std::move(*given));
+  }
+
   /// A plane that turns out of a periodic axis would not repeat any more.
   void check_turn_against_cell(const Vec3& normal) const {
     const model::PeriodicCell& cell = draft.scene.cell;
@@ -75,7 +92,7 @@ void read_plane(const WallEntry& wall, const Section& plane) {
   // Scaling by the largest component first keeps very long and very short vectors from over- or underflowing.
   const Vec3 unit = (*normal / normal->cwiseAbs().maxCoeff()).normalized();
   check_against_cell(plane, unit, wall.draft.scene.cell);
-  if (point) wall.add(*point, unit, "plane", *point);
+  if (point) wall.add(*point, unit, "plane", *point, 0);
 }
 
 /// The six sides of a box, as scene files name them.
@@ -86,6 +103,10 @@ struct Side {
   std::string name() const { return fmt::format("{}{}", upper ? '+' : '-', axis_names[axis]); }
 };
 constexpr std::array<Side, 6> sides{{{0, false}, {0, true}, {1, false}, {1, true}, {2, false}, {2, true}}};
+
+double area_of(const Side& side, const Vec3& edges) {
+  return edges[(side.axis + 1) % 3] * edges[(side.axis + 2) % 3];
+}
 
 bool check_corners(const Section& box, const Vec3& lower, const Vec3& upper) {
   for (int k = 0; k < 3; ++k) {
@@ -121,7 +142,14 @@ void read_box(const WallEntry& wall, const Section& box) {
   check_open_along_cell(box, closed, wall.draft.scene.cell);
   for (const Side& side : closed)
     wall.add(side.upper ? *upper : *lower, (side.upper ? -1.0 : 1.0) * Vec3::Unit(side.axis),
-             "box " + side.name(), 0.5 * (*lower + *upper));
+             "box " + side.name(), 0.5 * (*lower + *upper), area_of(side, *upper - *lower));
+}
+
+/// Surfaces are numbered behind the planes, all of which are known only in the end.
+void number_surface_motions(model::Scene& scene) {
+  const auto planes = static_cast<std::int32_t>(scene.walls.size());
+  for (model::WallMotion& motion : scene.wall_motions)
+    if (motion.wall < 0) motion.wall = planes - 1 - motion.wall;
 }
 
 }  // namespace
@@ -133,14 +161,27 @@ void read_walls(const Section& root, SceneDraft& draft) {
     section.check_keys();
     const std::int32_t material = read_material(section, "material", draft.scene);
     const WallEntry wall{section, ++number, material, draft, read_wall_motion(section, draft.folder)};
-    if (section.has("plane") == section.has("box")) {
+    const int shapes =
+        section.has("plane") + section.has("box") + section.has("polygon") + section.has("mesh");
+    if (shapes != 1) {
       section.report(
-          "either a plane or a box is wanted, e.g. \"plane: {point: [0, 0, 0], normal: [0, 0, 1]}\"");
+          "either a plane or a box is wanted, e.g. \"plane: {point: [0, 0, 0], normal: [0, 0, 1]}\", or a "
+          "polygon or a mesh");
       continue;
     }
     if (const auto plane = section.section("plane")) read_plane(wall, *plane);
     if (const auto box = section.section("box")) read_box(wall, *box);
+    if (const auto polygon = section.section("polygon"))
+      if (auto surface = read_polygon(*polygon)) {
+        const Vec3 area = area_vector(*surface);
+        wall.add(std::move(*surface), "polygon", area.normalized(), area.norm());
+      }
+    if (const auto mesh = section.section("mesh"))
+      if (auto surface = read_mesh_section(*mesh, draft.folder))
+        wall.add(std::move(*surface), fmt::format("mesh {}", mesh->text("file").value_or("")), Vec3::Zero(),
+                 0);
   }
+  number_surface_motions(draft.scene);
   draft.walls_complete = root.diagnostics().count() == mistakes_before;
 }
 

@@ -53,6 +53,10 @@ class GroupReader {
   template <class Group>
   void fill(Group& group) const {
     group.pairs = read_pairs();
+    if constexpr (std::is_same_v<typename Group::KinematicsType, contact::BallFacet>) {
+      const auto side = file_.read<std::int8_t>(path_ + "/side", group.pairs.size());
+      for (std::size_t c = 0; c < side.size(); ++c) group.pairs[c].side = side[c];
+    }
     check_pairs<typename Group::KinematicsType>(group.pairs);
     check_rules<typename Group::KinematicsType>(group);
     const std::string stored = file_.text(path_, "state_fields");
@@ -75,18 +79,35 @@ class GroupReader {
   template <class Kinematics>
   void check_pairs(const std::vector<Pair>& pairs) const {
     const std::int32_t bodies = model_.bodies.size();
-    const std::int32_t sides =
-        Kinematics::second_is_body ? bodies : static_cast<std::int32_t>(model_.walls.size());
+    const std::int32_t sides = count_of_seconds<Kinematics>();
     for (const Pair& pair : pairs) {
       if (pair.a < 0 || pair.a >= bodies || pair.b < 0 || pair.b >= sides)
-        damaged(fmt::format("a contact of {} and {}, but there are {} balls and {} walls", pair.a, pair.b,
-                            bodies, model_.walls.size()));
+        damaged(fmt::format("a contact of {} and {}, but there are {} balls and {} of the other side", pair.a,
+                            pair.b, bodies, sides));
       if (Kinematics::second_is_body && pair.a == pair.b && pair.image == model::Image{})
         damaged(fmt::format("a contact of ball {} with itself", pair.a));
       for (std::size_t k = 0; k < 3; ++k)
         if (pair.image[k] != 0 && !model_.cell.periodic[k])
           damaged("a contact through the periodic cell along an axis that does not repeat");
     }
+  }
+
+  template <class Kinematics>
+  std::int32_t count_of_seconds() const {
+    if constexpr (Kinematics::second_is_body)
+      return model_.bodies.size();
+    else if constexpr (std::is_same_v<Kinematics, contact::BallFacet>)
+      return model_.facets.size();
+    else
+      return static_cast<std::int32_t>(model_.walls.size());
+  }
+
+  template <class Kinematics>
+  std::int32_t second_material(const Pair& pair) const {
+    if constexpr (Kinematics::second_is_body)
+      return model_.bodies.material[static_cast<std::size_t>(pair.b)];
+    else
+      return model_.wall_material(Kinematics::wall(model_.placement(), pair));
   }
 
   /// The entry of `contacts` that holds for each pair now has to be the one that held for it.
@@ -97,8 +118,7 @@ class GroupReader {
     std::vector<bool> known(materials * materials);
     for (const Pair& pair : group.pairs) {
       const std::int32_t a = material[static_cast<std::size_t>(pair.a)];
-      const auto side = static_cast<std::size_t>(pair.b);
-      const std::int32_t b = Kinematics::second_is_body ? material[side] : model_.walls[side].material;
+      const std::int32_t b = second_material<Kinematics>(pair);
       const std::size_t at = static_cast<std::size_t>(a) * materials + static_cast<std::size_t>(b);
       if (known[at]) continue;
       known[at] = true;

@@ -53,6 +53,11 @@ Document read_document(std::string_view yaml, std::string_view name, std::span<c
 
 constexpr std::string_view balls_key = "balls";
 
+void make_absolute(Node* path, const std::filesystem::path& folder) {
+  if (path != nullptr && path->kind == Node::Kind::scalar && !path->text.empty())
+    path->text = std::filesystem::absolute(folder / path->text).lexically_normal().string();
+}
+
 /// The document with the paths of files that walls name made absolute: a state, which keeps it, may stand in
 /// any folder.
 std::string document_for_states(const Document& document, const std::filesystem::path& folder) {
@@ -62,9 +67,10 @@ std::string document_for_states(const Document& document, const std::filesystem:
   for (Node& section : root.children) {
     if (section.key != "walls") continue;
     for (Node& wall : section.children)
-      for (Node& child : wall.children)
-        if (child.key == "motion_file" && child.kind == Node::Kind::scalar && !child.text.empty())
-          child.text = std::filesystem::absolute(folder / child.text).lexically_normal().string();
+      for (Node& child : wall.children) {
+        make_absolute(child.key == "motion_file" ? &child : nullptr, folder);
+        make_absolute(child.key == "mesh" ? child.find("file") : nullptr, folder);
+      }
   }
   return document_text(root, balls_key);
 }

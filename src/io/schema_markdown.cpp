@@ -32,6 +32,8 @@ std::string value_text(const KeyDescription& key) {
       return unit + range;
     case vector:
       return fmt::format("three of {}", unit);
+    case vectors:
+      return fmt::format("list of three of {}", unit);
     case integer:
       return "whole number" + range;
     case integers:

@@ -37,6 +37,8 @@ std::string wanted(const KeyDescription& key) {
       return "a list of sections";
     case KeyKind::vector:
       return "a list of three values";
+    case KeyKind::vectors:
+      return "a list of lists of three values";
     case KeyKind::integers:
       return "a list of whole numbers";
     case KeyKind::texts:
@@ -106,21 +108,41 @@ std::optional<double> Section::quantity(std::string_view key) const {
 std::optional<Vec3> Section::vector(std::string_view key) const {
   const KeyDescription& description = describe(key);
   const Node* node = value(key, Node::Kind::list);
-  if (node == nullptr) return std::nullopt;
-  if (node->children.size() != 3) {
-    report(key,
-           fmt::format("{} values; three are wanted, e.g. {}", node->children.size(), description.example));
+  return node != nullptr ? read_vector(*node, path_of(key), description, description.example) : std::nullopt;
+}
+
+std::optional<Vec3> Section::read_vector(const Node& list, const std::string& path, const KeyDescription& key,
+                                         std::string_view example) const {
+  if (list.children.size() != 3) {
+    report_at(list, path, fmt::format("{} values; three are wanted, e.g. {}", list.children.size(), example));
     return std::nullopt;
   }
   Vec3 result;
   bool complete = true;
   for (int k = 0; k < 3; ++k) {
-    const auto component =
-        read_number(node->children[k], fmt::format("{}[{}]", path_of(key), k), description);
+    const auto component = read_number(list.children[k], fmt::format("{}[{}]", path, k), key);
     complete = complete && component.has_value();
     result[k] = component.value_or(0);
   }
   return complete ? std::optional(result) : std::nullopt;
+}
+
+std::optional<std::vector<Vec3>> Section::vectors(std::string_view key) const {
+  const Node* node = value(key, Node::Kind::list);
+  if (node == nullptr) return std::nullopt;
+  std::vector<Vec3> result;
+  for (std::size_t k = 0; k < node->children.size(); ++k) {
+    const Node& child = node->children[k];
+    const std::string path = fmt::format("{}[{}]", path_of(key), k);
+    if (child.kind != Node::Kind::list) {
+      report_at(child, path,
+                fmt::format("{} stands where a list of three values is wanted, e.g. [0, 0, 0]",
+                            kind_name(child.kind)));
+    } else if (const auto vector = read_vector(child, path, describe(key), "[0, 0, 0]")) {
+      result.push_back(*vector);
+    }
+  }
+  return result.size() == node->children.size() ? std::optional(result) : std::nullopt;
 }
 
 std::optional<std::int64_t> Section::integer(std::string_view key) const {

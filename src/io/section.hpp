@@ -31,6 +31,7 @@ class Section {
   bool has(std::string_view key) const { return node_->find(key) != nullptr; }
   std::optional<double> quantity(std::string_view key) const;
   std::optional<Vec3> vector(std::string_view key) const;
+  std::optional<std::vector<Vec3>> vectors(std::string_view key) const;
   std::optional<std::int64_t> integer(std::string_view key) const;
   /// A list of whole numbers; a single one counts as a list.
   std::optional<std::vector<std::int64_t>> integers(std::string_view key) const;
@@ -60,6 +61,8 @@ class Section {
   const Node* value(std::string_view key, Node::Kind kind) const;
   std::optional<double> read_number(const Node& node, const std::string& path,
                                     const KeyDescription& key) const;
+  std::optional<Vec3> read_vector(const Node& list, const std::string& path, const KeyDescription& key,
+                                  std::string_view example) const;
   std::optional<std::int64_t> read_whole_number(const Node& node, const std::string& path,
                                                 const KeyDescription& key) const;
   std::optional<std::string> read_word(const Node& node, const std::string& path,

@@ -155,4 +155,46 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
   output.commit();
 }
 
+void write_surface_frame(const std::filesystem::path& file, const assembly::Model& model) {
+  std::vector<Vec3> points;
+  std::vector<std::int64_t> corners;
+  std::vector<std::int32_t> walls;
+  for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
+    const contact::SurfacePlace& place = model.surface_places[s];
+    const auto first = static_cast<std::int64_t>(points.size());
+    for (const Vec3& x : model.surfaces[s].vertices)
+      points.push_back(place.moved ? place.pose.point(x, place.start) : x);
+    for (const model::Triangle& triangle : model.surfaces[s].triangles) {
+      for (const std::int32_t vertex : triangle) corners.push_back(first + vertex);
+      walls.push_back(static_cast<std::int32_t>(model.walls.size() + s));
+    }
+  }
+  const std::size_t cells = walls.size();
+  constexpr std::uint8_t vtk_triangle = 5;
+  AppendedArrays arrays;
+  const auto given = [&](std::string_view name, const auto& values) {
+    return arrays.add(name, values.size(), [from = &values] { return *from; });
+  };
+  std::string xml = fmt::format(
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+      points.size(), cells);
+  xml += "<CellData Scalars=\"wall\">\n" + given("wall", walls) + "</CellData>\n";
+  xml += "<Points>\n" + given("Points", points) + "</Points>\n<Cells>\n" + given("connectivity", corners);
+  xml += arrays.add("offsets", cells, [=] {
+    std::vector<std::int64_t> ends(cells);
+    for (std::size_t k = 0; k < cells; ++k) ends[k] = static_cast<std::int64_t>(3 * k + 3);
+    return ends;
+  });
+  xml += arrays.add("types", cells, [=] { return std::vector<std::uint8_t>(cells, vtk_triangle); });
+  xml += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+
+  AtomicFile output(file);
+  output.write(xml);
+  arrays.write(output);
+  output.write("\n</AppendedData>\n</VTKFile>\n");
+  output.commit();
+}
+
 }  // namespace eigengrain::io

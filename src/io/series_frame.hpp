@@ -11,4 +11,7 @@ namespace eigengrain::io {
 /// the state is that of the largest array and 12 bytes a ball.
 void write_frame(const std::filesystem::path& file, const assembly::State& state);
 
+/// The triangles of all surfaces where they are.
+void write_surface_frame(const std::filesystem::path& file, const assembly::Model& model);
+
 }  // namespace eigengrain::io

@@ -102,7 +102,50 @@ void read_file(const Section& wall, const std::filesystem::path& folder, WallMot
     wall.report("motion_file", fmt::format("\"{}\" holds no rows; a line is time, vx, vy, vz", file));
 }
 
+std::optional<ServoKeys> read_servo(const Section& wall) {
+  const auto section = wall.section("servo");
+  if (!section) return std::nullopt;
+  section->check_keys();
+  ServoKeys keys;
+  if (section->has("direction")) {
+    const auto direction = section->vector("direction");
+    if (direction && direction->stableNorm() == 0)
+      section->report("direction", "zero, which is no direction; write e.g. \"direction: [0, 0, -1]\"");
+    else if (direction)
+      keys.direction = direction->stableNormalized();
+  }
+  if (section->has("force") == section->has("stress"))
+    section->report("either a force or a stress is wanted, e.g. \"force: 10 N\"");
+  if (section->has("area") && !section->has("stress"))
+    section->report("area", "has a meaning beside stress only; remove it");
+  keys.force = section->quantity("force");
+  keys.stress = section->quantity("stress");
+  keys.area = section->quantity("area");
+  keys.relaxation = section->quantity("relaxation").value_or(0);
+  keys.max_speed = section->quantity("max_speed").value_or(0);
+  return keys;
+}
+
 }  // namespace
+
+std::optional<model::WallMotion> wall_motion(const Section& wall, const WallMotionKeys& keys,
+                                             std::int32_t index, const Vec3& centre, const Vec3& normal,
+                                             double area) {
+  if (!keys.moves()) return std::nullopt;
+  model::WallMotion motion{index, centre, keys.time, keys.velocity, {}};
+  if (!keys.servo) return motion;
+  const ServoKeys& asked = *keys.servo;
+  model::Servo& servo = motion.servo.emplace();
+  servo.direction = asked.direction.value_or(normal);
+  servo.force = asked.force ? *asked.force : asked.stress.value_or(0) * asked.area.value_or(area);
+  servo.relaxation = asked.relaxation;
+  servo.max_speed = asked.max_speed;
+  if (servo.direction.isZero(0))
+    wall.report("servo", "a mesh has no direction of its own; add e.g. \"direction: [0, 0, -1]\"");
+  if (asked.stress && servo.force == 0)
+    wall.report("servo", "a stress on a wall without an area of its own; add e.g. \"area: 0.04 m2\"");
+  return motion;
+}
 
 WallMotionKeys read_wall_motion(const Section& wall, const std::filesystem::path& folder) {
   WallMotionKeys keys;
@@ -119,6 +162,8 @@ WallMotionKeys read_wall_motion(const Section& wall, const std::filesystem::path
   }
   if (wall.has("motion")) read_rows(wall, keys);
   if (wall.has("motion_file")) read_file(wall, folder, keys);
+  keys.servo = read_servo(wall);
+  if (keys.servo && !keys.moves()) RowList(keys).add(0, {});
   return keys;
 }
 

@@ -4,6 +4,7 @@
 #include "eigengrain/io/state_file.hpp"
 
 #include "atomic_file.hpp"
+#include "fingerprint.hpp"
 #include "hdf5.hpp"
 #include "seal.hpp"
 #include "state_layout.hpp"
@@ -65,6 +66,11 @@ void write_pairs(const Group& group, const std::string& path, h5::File& file) {
   file.write(path + "/a", first);
   file.write(path + "/b", second);
   file.write(path + "/image", image);
+  if constexpr (std::is_same_v<typename Group::KinematicsType, contact::BallFacet>) {
+    std::vector<std::int8_t> side;
+    for (const contact::Pair& pair : group.pairs) side.push_back(pair.side);
+    file.write(path + "/side", side);
+  }
 }
 
 /// A state is plain doubles (contact/law.hpp): part after part is taken out of it.
@@ -141,6 +147,10 @@ void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::list, "rebuilds", state.list.rebuilds);
   file.write(layout::list_position, state.list.position);
   write_walls(state, file);
+  if (!state.model.surfaces.empty()) {
+    file.add_group(layout::surfaces);
+    file.write(layout::surface_fingerprint, fingerprints(state.model.surfaces));
+  }
 }
 
 }  // namespace

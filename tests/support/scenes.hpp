@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 /// Scenes of a few bodies for tests, built in code. Masses are given, not computed from a density, so that
@@ -71,6 +73,18 @@ class SceneBuilder {
   }
   SceneBuilder& plane(const Vec3& point, const Vec3& normal) {
     scene_.walls.push_back({point, normal.normalized(), 0, "plane"});
+    return *this;
+  }
+  /// A wall of triangles whose centre is the origin.
+  SceneBuilder& surface(model::Surface surface) {
+    surface.name = "surface " + std::to_string(scene_.surfaces.size());
+    scene_.surfaces.push_back(std::move(surface));
+    return *this;
+  }
+  /// Motion of the surface added last; after all planes.
+  SceneBuilder& surface_carried(const Vec3& velocity, const Vec3& spin = Vec3::Zero()) {
+    const auto wall = static_cast<std::int32_t>(scene_.walls.size() + scene_.surfaces.size()) - 1;
+    scene_.wall_motions.push_back({wall, scene_.surfaces.back().centre, {0.0}, {{velocity, spin}}});
     return *this;
   }
   /// Motion of the plane added last, which turns about `centre`.

@@ -48,14 +48,27 @@ std::vector<std::string> scenes_with_room() {
   const std::string plane = "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]\n";
   const std::string box = "walls: [{box: {min: [0, 0, 0], max: [1, 1, 1]}, material: grain}]\n";
   const std::string carried =
-      "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain, motion: [{time: 0}]}]\n";
+      "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain, motion: [{time: 0}], "
+      "servo: {stress: 1 kPa, area: 1 m2, max_speed: 1}}]\n";
+  const std::string driven =
+      "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain, servo: {force: 1 N, "
+      "max_speed: 1}}]\n";
+  const std::string polygon =
+      "walls: [{polygon: {corners: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}, material: grain}]\n";
+  const std::string mesh = "walls: [{mesh: {file: drum.stl, unit: mm}, material: grain}]\n";
   const std::string periodic = "periodic: {box: [1, 1, 1]}\n";
   const std::string fixed = "timestep: {policy: fixed, dt: 1e-5}\n";
   const std::string table = "histories: [{file: table.csv, of: unbalanced, balls: 0}]\n";
   const std::string no_law = "contacts: [{between: [grain, grain], law: none}]\n";
-  std::vector<std::string> scenes{materials + no_law + ball,           materials + no_law + file + fixed,
-                                  materials + no_law + ball + plane,   materials + no_law + ball + box,
-                                  materials + no_law + ball + carried, materials + no_law + ball + periodic,
+  std::vector<std::string> scenes{materials + no_law + ball,
+                                  materials + no_law + file + fixed,
+                                  materials + no_law + ball + plane,
+                                  materials + no_law + ball + box,
+                                  materials + no_law + ball + carried,
+                                  materials + no_law + ball + polygon,
+                                  materials + no_law + ball + driven,
+                                  materials + no_law + ball + mesh,
+                                  materials + no_law + ball + periodic,
                                   materials + no_law + ball + table};
   for (const contact::LawDescription& law : contact::law_descriptions()) {
     std::string needed;
@@ -78,6 +91,7 @@ TEST(Schema, EveryKeyIsAcceptedWithItsExampleAndItsDefault) {
   const TemporaryFolder folder;
   folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
   folder.write("motion.csv", "0 0 0 0\n");
+  folder.write("drum.stl", "solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n");
   const auto accepted = [&](const std::string& assignment, std::string& reasons) {
     for (const std::string& scene : scenes_with_room()) {
       const std::vector<Mistake> mistakes = mistakes_in(scene, {assignment}, folder.path());
@@ -99,6 +113,7 @@ TEST(Schema, EverySectionRejectsUnknownKeys) {
   const TemporaryFolder folder;
   folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
   folder.write("motion.csv", "0 0 0 0\n");
+  folder.write("drum.stl", "solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n");
   for (const KeyDescription& key : scene_schema()) {
     std::string path = first_entry(key.path);
     if (key.kind == KeyKind::section_list)

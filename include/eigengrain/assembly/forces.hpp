@@ -34,7 +34,10 @@ struct Trial {
 /// Where the sides of contacts are in a trial state.
 inline contact::Placement placement_in(const Model& model, const Trial& trial) {
   contact::Placement placement = model.placement(trial.position);
-  if (trial.walls != nullptr) placement.middle_walls = trial.walls->middle;
+  if (trial.walls != nullptr) {
+    placement.middle_walls = trial.walls->middle;
+    placement.middle_surfaces = trial.walls->middle_surfaces;
+  }
   return placement;
 }
 

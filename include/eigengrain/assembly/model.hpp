@@ -2,6 +2,7 @@
 
 #include "eigengrain/contact/group.hpp"
 #include "eigengrain/model/scene.hpp"
+#include "eigengrain/search/facet_tree.hpp"
 
 #include <span>
 #include <vector>
@@ -10,19 +11,30 @@ namespace eigengrain::assembly {
 
 /// A scene brought to life: bodies in storage order, and the contacts that act between them.
 struct Model {
-  model::Bodies bodies;             ///< along a space-filling curve; identity is the place in the scene
-  std::vector<model::Plane> walls;  ///< where they are now
-  std::vector<model::WallMotion> wall_motions;  ///< of those that move
-  std::vector<model::WallPose> wall_poses;      ///< [wall_motions] where these are now
+  model::Bodies bodies;                  ///< along a space-filling curve; identity is the place in the scene
+  std::vector<model::Plane> walls;       ///< where they are now
+  std::vector<model::Surface> surfaces;  ///< walls of triangles, as they start
+  model::Facets facets;                  ///< their triangles, as they start
+  std::vector<contact::SurfacePlace> surface_places;  ///< [surfaces] where they are now
+  std::vector<search::FacetTree> facet_trees;         ///< [surfaces]
+  std::vector<model::WallMotion> wall_motions;        ///< of those that move
+  std::vector<model::WallPose> wall_poses;            ///< [wall_motions] where these are now
   model::PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
   double local_damping = 0;     ///< α
   contact::Contacts contacts;
 
+  /// Walls of all kinds: planes, then surfaces.
+  std::size_t wall_count() const { return walls.size() + surfaces.size(); }
+  std::int32_t wall_material(std::int32_t wall) const {
+    const auto w = static_cast<std::size_t>(wall);
+    return w < walls.size() ? walls[w].material : surfaces[w - walls.size()].material;
+  }
+
   /// The sides of contacts with the bodies where they are, or at trial positions [bodies].
   contact::Placement placement() const { return placement(bodies.position); }
   contact::Placement placement(std::span<const Vec3> position) const {
-    return {position, bodies.radius, walls, cell, {}};
+    return {position, bodies.radius, walls, cell, {}, &facets, surface_places, {}};
   }
 };
 

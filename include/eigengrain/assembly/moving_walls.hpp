@@ -24,10 +24,11 @@ struct WallStep {
   void move(State& state, double dt);
 
   std::vector<contact::SideMotion> side;  ///< [walls] translation of the centre and rotation in the step
-  std::vector<model::Plane> middle;       ///< [walls] as they were in the middle of it
+  std::vector<model::Plane> middle;       ///< [planes] as they were in the middle of it
+  std::vector<contact::SurfacePlace> middle_surfaces;  ///< [surfaces]
 };
 
-/// Puts the planes of a state where the poses of its walls say; with `settings.walls` as their start.
+/// Puts the walls of a state where their poses say; planes from their start in `settings.walls`.
 void place_walls(State& state);
 
 }  // namespace eigengrain::assembly

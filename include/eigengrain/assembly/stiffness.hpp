@@ -4,6 +4,7 @@
 #include "eigengrain/contact/element.hpp"
 
 #include <concepts>
+#include <type_traits>
 #include <vector>
 
 namespace eigengrain::assembly {
@@ -25,6 +26,8 @@ void assemble_stiffness(const Model& model, Sink& sink, Listed which = Listed::a
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      // Of the facets near a ball only those that it can touch together, now.
+      if (std::is_same_v<Kinematics, contact::BallFacet> && !group.pairs[c].is_contact()) continue;
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
       const contact::ContactMotion motion = contact::at_rest(geometry);
       if (which == Listed::acting && !group.law.acts(motion, group.states[c])) continue;

@@ -34,7 +34,7 @@ void assemble_tangent(const Model& model, const Trial& trial, Sink& sink) {
       typename Group::State discarded;
       const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
       sink.add(pair.a, Kinematics::second_is_body ? pair.b : contact::no_body,
-               contact::consistent_tangent(geometry, Kinematics::curvature(geometry), force,
+               contact::consistent_tangent(geometry, Kinematics::curvature(placement, pair, geometry), force,
                                            group.law.tangent(motion, group.states[c])));
     }
   });

@@ -1,12 +1,16 @@
 #pragma once
 
 #include "eigengrain/base/type_list.hpp"
+#include "eigengrain/contact/facet.hpp"
 #include "eigengrain/contact/geometry.hpp"
 #include "eigengrain/contact/law.hpp"
 #include "eigengrain/contact/shear_transport.hpp"
 #include "eigengrain/model/bodies.hpp"
+#include "eigengrain/model/surface.hpp"
 #include "eigengrain/model/surroundings.hpp"
+#include "eigengrain/model/wall_motion.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -19,6 +23,23 @@ struct Pair {
   std::int32_t a = 0;
   std::int32_t b = 0;
   model::Image image{};
+  /// With a facet: 1 or -1, on which side of it the ball is; twice that where the pair is no contact, as
+  /// another facet of the surface gives it (facet_choice.hpp).
+  std::int8_t side = 0;
+
+  bool is_contact() const { return side == 1 || side == -1; }
+};
+
+/// Where a surface is.
+struct SurfacePlace {
+  Vec3 start = Vec3::Zero();  ///< its centre where its facets are described, m
+  model::WallPose pose;       ///< its centre now
+  bool moved = false;         ///< else it is where its facets are described
+
+  Vec3 to_local(const Vec3& x) const {
+    return moved ? Vec3(start + pose.orientation.conjugate() * (x - pose.centre)) : x;
+  }
+  Vec3 turned(const Vec3& v) const { return moved ? Vec3(pose.orientation * v) : v; }
 };
 
 /// Where the sides of contacts are. `position` may be a trial position, apart from bodies.position.
@@ -29,6 +50,9 @@ struct Placement {
   const model::PeriodicCell& cell;
   /// Walls as they were in the middle of the step; empty where none moves.
   std::span<const model::Plane> middle_walls{};
+  const model::Facets* facets = nullptr;  ///< of all surfaces
+  std::span<const SurfacePlace> surfaces{};
+  std::span<const SurfacePlace> middle_surfaces{};  ///< in the middle of the step; empty where none moves
 };
 
 /// Side a is a ball, side b another ball (or an image of the same one).
@@ -36,9 +60,11 @@ struct BallBall {
   static constexpr std::string_view name = "ball-ball";
   static constexpr bool second_is_body = true;
 
-  /// 1/d, by which n turns with the transverse motion of the centres: dn = (1 - nnᵀ)(u_b - u_a)/d.
-  static double curvature(const ContactGeometry& geometry) {
-    return 1.0 / (geometry.lever_a - geometry.lever_b).dot(geometry.normal);
+  /// C, by which n turns with the motion of the centres: dn = C (u_b - u_a). Here (1 - nnᵀ)/d.
+  static Mat3 curvature(const Placement& /*placement*/, const Pair& /*pair*/,
+                        const ContactGeometry& geometry) {
+    const Vec3& n = geometry.normal;
+    return (Mat3::Identity() - n * n.transpose()) / (geometry.lever_a - geometry.lever_b).dot(n);
   }
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
@@ -59,7 +85,10 @@ struct BallPlane {
   static constexpr std::string_view name = "ball-wall";
   static constexpr bool second_is_body = false;
 
-  static double curvature(const ContactGeometry& /*geometry*/) { return 0.0; }
+  static Mat3 curvature(const Placement& /*placement*/, const Pair& /*pair*/,
+                        const ContactGeometry& /*geometry*/) {
+    return Mat3::Zero();
+  }
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
     const auto a = static_cast<std::size_t>(pair.a);
@@ -76,7 +105,69 @@ struct BallPlane {
   static std::int32_t wall(const Placement& /*placement*/, const Pair& pair) { return pair.b; }
 };
 
-using KinematicsTypes = TypeList<BallBall, BallPlane>;
+/// Side a is a ball, side b a triangle of a surface; pairs that are no contacts have no overlap.
+struct BallFacet {
+  static constexpr std::string_view name = "ball-facet";
+  static constexpr bool second_is_body = false;
+
+  /// The ball's centre in the frame in which the facets are described.
+  static Vec3 local_centre(const Placement& placement, std::span<const SurfacePlace> places, const Pair& pair,
+                           const Vec3& back = Vec3::Zero()) {
+    return place_of(placement, places, pair)
+        .to_local(placement.position[pair.a] - placement.cell.shift(pair.image) - back);
+  }
+
+  static Mat3 curvature(const Placement& placement, const Pair& pair, const ContactGeometry& /*geometry*/) {
+    const Vec3 x = local_centre(placement, placement.surfaces, pair);
+    const Mat3 local = feature_curvature(x, facet_of(placement, pair), feature(placement, pair));
+    const SurfacePlace& place = place_of(placement, placement.surfaces, pair);
+    if (!place.moved) return local;
+    const Mat3 turn = place.pose.orientation.toRotationMatrix();
+    return turn * local * turn.transpose();
+  }
+
+  static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
+    return geometry_of(placement, placement.surfaces, pair, Vec3::Zero());
+  }
+  /// In the middle of the step, with the feature that is touched at its end: what changes there is none of
+  /// the motion's.
+  static ContactGeometry geometry_before(const Placement& placement, const Pair& pair, const Vec3& back_a,
+                                         const Vec3& /*back_b*/) {
+    return geometry_of(placement,
+                       placement.middle_surfaces.empty() ? placement.surfaces : placement.middle_surfaces,
+                       pair, back_a);
+  }
+  static std::int32_t wall(const Placement& placement, const Pair& pair) {
+    return static_cast<std::int32_t>(placement.walls.size()) + facet_of(placement, pair).surface;
+  }
+
+ private:
+  static const model::Facet& facet_of(const Placement& placement, const Pair& pair) {
+    return placement.facets->facet[static_cast<std::size_t>(pair.b)];
+  }
+  static const SurfacePlace& place_of(const Placement& placement, std::span<const SurfacePlace> places,
+                                      const Pair& pair) {
+    return places[static_cast<std::size_t>(facet_of(placement, pair).surface)];
+  }
+  static FacetFeature feature(const Placement& placement, const Pair& pair) {
+    return nearest_point(local_centre(placement, placement.surfaces, pair), facet_of(placement, pair))
+        .feature;
+  }
+  static ContactGeometry geometry_of(const Placement& placement, std::span<const SurfacePlace> places,
+                                     const Pair& pair, const Vec3& back) {
+    const SurfacePlace& place = place_of(placement, places, pair);
+    ContactGeometry result = ball_feature(local_centre(placement, places, pair, back),
+                                          placement.radius[pair.a], facet_of(placement, pair),
+                                          feature(placement, pair), pair.side < 0 ? -1 : 1, place.start);
+    if (!pair.is_contact()) result.overlap = std::min(result.overlap, 0.0);
+    result.normal = place.turned(result.normal);
+    result.lever_a = place.turned(result.lever_a);
+    result.lever_b = place.turned(result.lever_b);
+    return result;
+  }
+};
+
+using KinematicsTypes = TypeList<BallBall, BallPlane, BallFacet>;
 
 /// Displacement and rotation of one side since the committed state.
 struct SideMotion {

@@ -14,6 +14,7 @@ enum class KeyKind {
   section_list,  ///< a list of maps
   quantity,      ///< a number, perhaps with a unit
   vector,        ///< three quantities
+  vectors,       ///< a list of vectors
   integer,
   integers,  ///< a list of whole numbers
   flag,

@@ -18,10 +18,15 @@ namespace eigengrain::io {
 ///
 /// Each file is there in full or not at all, and the list names only frames that are there: a run may be
 /// killed at any time.
+///
+/// Of surfaces, a frame has their triangles where they are, with the number of the wall (from 0) that each
+/// belongs to.
 class Series {
  public:
+  enum class Of { balls, surfaces };
+
   /// Nothing is written before the first frame, which replaces the list of an earlier run.
-  Series(std::filesystem::path folder, std::string stem);
+  Series(std::filesystem::path folder, std::string stem, Of what = Of::balls);
 
   /// At a restart from this step, once, before the first frame: takes over the list that is there, without
   /// the frames after the step. That of the step itself stays. Throws InputError where the list is not one
@@ -50,6 +55,7 @@ class Series {
 
   std::filesystem::path folder_;
   std::string stem_;
+  Of what_;
   std::vector<Frame> frames_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "eigengrain/base/vec.hpp"
 #include "eigengrain/model/bodies.hpp"
+#include "eigengrain/model/surface.hpp"
 #include "eigengrain/model/surroundings.hpp"
 #include "eigengrain/model/wall_motion.hpp"
 
@@ -74,7 +75,8 @@ struct Scene {
   std::vector<ContactRule> contacts;     ///< the first that matches a pair holds
   Bodies bodies;                         ///< in the order in which the scene names them
   std::vector<Plane> walls;              ///< where they start
-  std::vector<WallMotion> wall_motions;  ///< of those that move
+  std::vector<Surface> surfaces;         ///< walls of triangles; numbered behind the planes
+  std::vector<WallMotion> wall_motions;  ///< of walls that move
   PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
   double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47

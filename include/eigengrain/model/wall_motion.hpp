@@ -4,6 +4,7 @@
 #include "eigengrain/model/surroundings.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 /// Walls that move: their motion is given and no force changes it.
@@ -27,6 +28,14 @@ struct WallPose {
   Vec3 point(const Vec3& x, const Vec3& start) const { return centre + orientation * (x - start); }
 };
 
+/// What drives a wall to a force, beside its given velocity (assembly/servo.hpp).
+struct Servo {
+  Vec3 direction = Vec3::Zero();  ///< unit, the way in which it pushes
+  double force = 0;               ///< wanted, of the wall on the bodies along the direction, N
+  double relaxation = 0.5;        ///< α, the part of what is missing that a step makes up for
+  double max_speed = 0;           ///< m/s
+};
+
 /// The motion of one wall: its velocity at given times, linear in between, constant before the first and
 /// after the last.
 struct WallMotion {
@@ -34,6 +43,7 @@ struct WallMotion {
   Vec3 start = Vec3::Zero();           ///< the centre at t = 0, m
   std::vector<double> time;            ///< s, increasing; at least one
   std::vector<WallVelocity> velocity;  ///< [time]
+  std::optional<Servo> servo{};        ///< adds to the velocity
 
   WallVelocity at(double t) const;
 };
