@@ -60,6 +60,13 @@ bool takes(const Offer& facet, const Offer& other) {
   return !(own_end && other.feature.kind == Kind::edge);
 }
 
+/// Offers are in the order of their facets, which decides between equals.
+void sort_by_distance(std::vector<Offer*>& order) {
+  std::sort(order.begin(), order.end(), [](const Offer* l, const Offer* r) {
+    return l->distance != r->distance ? l->distance < r->distance : l < r;
+  });
+}
+
 /// Normal of the surface at the nearest point: its sign tells outside from inside.
 Vec3 normal_at(const model::Facets& facets, const Offer& offer) {
   const auto k = static_cast<std::size_t>(offer.feature.k);
@@ -102,33 +109,27 @@ int side_of_height(double height) {
   return height >= 0 ? 1 : -1;
 }
 
-/// Rule 2.
-void find_sides(std::span<const Pair> pairs, std::span<Offer> offers) {
-  for (std::size_t c = 0; c < offers.size(); ++c)
-    if (offers[c].feature.kind == Kind::face) {
-      const int before = remembered(pairs[c]);
-      offers[c].side = before != 0 ? before : side_of_height(offers[c].height);
-      offers[c].direction = -offers[c].side * offers[c].facet->normal;
-    }
-  for (Offer& offer : offers) {
-    if (offer.feature.kind == Kind::face) continue;
-    const auto owner = std::find_if(offers.begin(), offers.end(), [&](const Offer& other) {
-      return other.feature.kind == Kind::face && has_feature_of(other, offer);
-    });
-    offer.side = owner != offers.end() ? owner->side : side_of_height(offer.height);
+/// Rules 2 and 3, from the nearest offer on: who takes an edge or corner is nearer, so its side is known.
+/// The nearest of all is always left to count.
+void find_sides_and_takers(std::span<const Pair> pairs, std::span<Offer> offers) {
+  thread_local std::vector<Offer*> order;
+  order.clear();
+  for (std::size_t c = 0; c < offers.size(); ++c) {
+    order.push_back(&offers[c]);
+    if (offers[c].feature.kind != Kind::face) continue;
+    const int before = remembered(pairs[c]);
+    offers[c].side = before != 0 ? before : side_of_height(offers[c].height);
+    offers[c].direction = -offers[c].side * offers[c].facet->normal;
   }
-}
-
-/// Rule 3; the nearest of all always stays.
-void give_way(std::span<Offer> offers) {
-  const Offer* nearest = nullptr;
-  for (const Offer& offer : offers)
-    if (offer.counts && (nearest == nullptr || offer.distance < nearest->distance)) nearest = &offer;
-  for (Offer& offer : offers)
-    if (offer.counts && offer.feature.kind != Kind::face && &offer != nearest)
-      offer.counts = std::none_of(offers.begin(), offers.end(), [&](const Offer& other) {
-        return &other != &offer && takes(other, offer);
-      });
+  sort_by_distance(order);
+  for (Offer* offer : order) {
+    if (offer->feature.kind == Kind::face) continue;
+    const auto taker = std::find_if(order.begin(), order.end(), [&](const Offer* other) {
+      return other != offer && other->side != 0 && takes(*other, *offer);
+    });
+    offer->side = taker != order.end() ? (*taker)->side : side_of_height(offer->height);
+    offer->counts = taker == order.end() || offer == order.front();
+  }
 }
 
 /// Rule 4.
@@ -137,10 +138,7 @@ void merge(std::span<Offer> offers) {
   order.clear();
   for (Offer& offer : offers)
     if (offer.counts) order.push_back(&offer);
-  // Offers are in the order of their facets, which decides between equals.
-  std::sort(order.begin(), order.end(), [](const Offer* l, const Offer* r) {
-    return l->distance != r->distance ? l->distance < r->distance : l < r;
-  });
+  sort_by_distance(order);
   for (std::size_t c = 1; c < order.size(); ++c)
     order[c]->counts =
         std::none_of(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(c), [&](const Offer* nearer) {
@@ -154,7 +152,7 @@ void choose_facets(const Placement& placement, std::span<Pair> pairs, std::span<
   thread_local std::vector<Offer> offers;
   offers.clear();
   for (const Pair& pair : pairs) offers.push_back(offer_of(placement, pair));
-  find_sides(pairs, offers);
+  find_sides_and_takers(pairs, offers);
   const bool two_sided =
       placement.facets->two_sided[static_cast<std::size_t>(offers.front().facet->surface)] != 0;
   for (std::size_t c = 0; c < pairs.size(); ++c) {
@@ -162,12 +160,9 @@ void choose_facets(const Placement& placement, std::span<Pair> pairs, std::span<
     const bool has_direction = offers[c].distance > 0 || remembered(pairs[c]) != 0;
     if (!has_direction || (offers[c].distance == 0 && offers[c].feature.kind != Kind::face))
       throw CentreOnFacet{pairs[c].a, pairs[c].b};
-    offers[c].counts = two_sided || offers[c].side > 0;
+    offers[c].counts = offers[c].counts && (two_sided || offers[c].side > 0);
   }
-  if (pairs.size() > 1) {
-    give_way(offers);
-    merge(offers);
-  }
+  if (pairs.size() > 1) merge(offers);
   for (std::size_t c = 0; c < pairs.size(); ++c) {
     pairs[c].side = static_cast<std::int8_t>(offers[c].counts ? offers[c].side : 2 * offers[c].side);
     directions[c] = offers[c].direction;

@@ -30,8 +30,8 @@ inline constexpr double one_contact = 0.8660254037844386;
 ///
 ///   1. Each facet offers its nearest point to the centre: on its face, an edge or a corner.
 ///   2. The ball is on the side from which it came to a face; where an edge or corner is nearest, on that of
-///      the face that owns the nearest point, or else on that of the surface's normal there. A one-sided
-///      facet offers nothing to a ball behind it.
+///      the facet that takes it by rule 3, or else on that of the surface's normal there. A one-sided facet
+///      offers nothing to a ball behind it.
 ///   3. An edge or corner counts only where no facet that it belongs to offers a nearer point: an edge gives
 ///      way to its faces, a corner to its faces and edges (as in the hierarchies of contact detection with
 ///      meshes, e.g. Hu et al., Comput. Part. Mech. 2015; Kremmer and Favier, Int. J. Numer. Meth. Eng.
