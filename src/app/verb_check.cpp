@@ -88,6 +88,7 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
   const auto moves = [](model::FixedComponents fixed) { return fixed.translation() != 7; };
   if (std::any_of(model.bodies.fixed.begin(), model.bodies.fixed.end(), moves))
     parts.emplace_back("translation");
+  if (!model.wall_motions.empty()) parts.emplace_back("motion of walls");
   if (unknowns.rotations() > 0) parts.emplace_back("rotation");
   return parts;
 }

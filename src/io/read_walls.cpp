@@ -178,8 +178,10 @@ void read_walls(const Section& root, SceneDraft& draft) {
       }
     if (const auto mesh = section.section("mesh"))
       if (auto surface = read_mesh_section(*mesh, draft.folder))
-        wall.add(std::move(*surface), fmt::format("mesh {}", mesh->text("file").value_or("")), Vec3::Zero(),
-                 0);
+        wall.add(std::move(*surface),
+                 fmt::format("mesh {}",
+                             std::filesystem::path(mesh->text("file").value_or("")).filename().string()),
+                 Vec3::Zero(), 0);
   }
   number_surface_motions(draft.scene);
   draft.walls_complete = root.diagnostics().count() == mistakes_before;
