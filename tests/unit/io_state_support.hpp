@@ -26,7 +26,7 @@
 namespace eigengrain::io {
 
 /// Balls on a loose lattice of a cell that repeats along x, on a floor, of four materials whose contacts have
-/// friction, none, and tension; ice and ice do not see each other.
+/// friction, none, and tension; polygons lie in its walls; ice and ice do not see each other.
 inline constexpr std::string_view busy_scene = R"(
 gravity: [0, 0, -9.81 m/s2]
 materials:
@@ -46,6 +46,8 @@ balls:
 walls:
   - {plane: {point: [0, 0, 0], normal: [0, 0, 3]}, material: steel}
   - {plane: {point: [0, 0, 0], normal: [0, 1, 0]}, material: sand}
+  - {polygon: {corners: [[0, -1, 0], [0.06, -1, 0], [0.06, 1, 0], [0, 1, 0]]}, material: steel}
+  - {polygon: {corners: [[0, 0, -1], [0, 0, 1], [0.06, 0, 1], [0.06, 0, -1]]}, material: sand}
 periodic: {box: [0.06, 1, 1], axes: x}
 damping: {local: 0.25}
 timestep: {policy: fixed, dt: 10 us}
@@ -139,8 +141,8 @@ inline std::vector<std::string> bits(const assembly::State& state) {
         [&](const auto& concrete) {
           all.push_back(std::to_string(concrete.rule));
           for (const contact::Pair& pair : concrete.pairs)
-            all.push_back(
-                fmt::format("{} {} {} {} {}", pair.a, pair.b, pair.image[0], pair.image[1], pair.image[2]));
+            all.push_back(fmt::format("{} {} {} {} {} {}", pair.a, pair.b, pair.image[0], pair.image[1],
+                                      pair.image[2], pair.side));
           if constexpr (!std::is_empty_v<typename std::decay_t<decltype(concrete)>::State>)
             all.push_back(bytes_of(concrete.states));
         },
