@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 namespace eigengrain::generate {
@@ -87,36 +86,28 @@ void require_packing(const DensePacking& packing) {
       packing.fraction, packing.largest_overlap));
 }
 
-/// Searches the factor of the radii that gives the mean overlap wanted: compression adds as much to the
-/// overlap as to the radii, about, and what is known of factors that are too small and too large keeps it
-/// from wandering.
+/// Searches the factor of the radii that gives the mean overlap wanted. Compression adds a little less to the
+/// overlap than to the radii, so that stepping by what is missing gets there from one side. It begins well
+/// beyond jamming: packings that come from there hardly rearrange, where those that are just about to jam do
+/// so slowly and often.
 class ScaleSearch {
  public:
-  explicit ScaleSearch(double wanted) : wanted_(wanted) {}
+  explicit ScaleSearch(double wanted) : wanted_(wanted), scale_(1.01 + 2 * wanted) {}
 
-  /// The next factor, after the mean overlap that the last one has given.
-  double next(double scale, double overlap) {
-    if (overlap < wanted_)
-      low_ = scale;
-    else
-      high_ = scale;
-    double guess =
-        overlap > 0 ? scale * (1 + wanted_ - overlap) : scale * (1 + std::max(wanted_, first_compression));
-    if (!low_ || !high_) return guess;
-    if (*low_ >= *high_) {  // packings remember how they came about: what was too small may be too large now
-      (overlap < wanted_ ? high_ : low_).reset();
-      return guess;
-    }
-    if (guess <= *low_ || guess >= *high_) guess = 0.5 * (*low_ + *high_);
-    return guess;
+  double scale() const { return scale_; }
+  /// Steps on, after the mean overlap that the present factor has given; 0: nothing holds the balls.
+  void step(double overlap) {
+    if (overlap > 0)
+      step_ = wanted_ - overlap;
+    else  // too far back, or not yet far enough
+      step_ = step_ < 0 ? -step_ / 2 : std::max(2 * step_, wanted_);
+    scale_ *= 1 + step_;
   }
 
  private:
-  static constexpr double first_compression = 2e-3;
-
   double wanted_;
-  std::optional<double> low_;
-  std::optional<double> high_;
+  double scale_;
+  double step_ = 0;  ///< relative, the last one
 };
 
 }  // namespace
@@ -144,7 +135,6 @@ DensePacking pack_to_overlap(std::vector<double> radii, const Region& region, do
   require_room_for_all(radii, region);
   OverlapMinimiser minimiser = random_start(radii, region, random);
   ScaleSearch search(mean_overlap);
-  double scale = 1;
   // Nothing overlaps but for a thousandth of what is wanted: not jammed.
   const double apart = 1e-3 * mean_overlap;
   const auto reached = [&](End end) {
@@ -155,19 +145,19 @@ DensePacking pack_to_overlap(std::vector<double> radii, const Region& region, do
     return std::abs(overlap - mean_overlap) <= part * tolerance * mean_overlap;
   };
   for (int round = 0; round < most_rounds; ++round) {
+    minimiser.set_scale(search.scale());
     // Most equilibria are only looked at and need not be good ones.
     double overlap = reached(minimiser.minimise(apart, 1e-3, most_iterations));
     if (near(overlap, 0.5)) {
       const End end = minimiser.minimise(apart, balanced, most_iterations);
       overlap = reached(end);
       if (near(overlap, 1) && end == End::balanced) {
-        DensePacking packing = packing_of(minimiser, region, scale, true);
+        DensePacking packing = packing_of(minimiser, region, search.scale(), true);
         require_packing(packing);
         return packing;
       }
     }
-    scale = search.next(scale, overlap);
-    minimiser.set_scale(scale);
+    search.step(overlap);
   }
   throw InputError(
       fmt::format("no packing with a mean overlap of {} was found in {} equilibria; ask for a larger "

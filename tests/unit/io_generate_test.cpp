@@ -74,7 +74,7 @@ TEST(GeneratedBalls, FillsReachTheirFractionAndNoteIt) {
   for (const double m : dense.bodies.mass) solid += m / 2500;
   EXPECT_NEAR(solid, 0.5, model::sphere_mass(0.06, 1) / 2);
   const model::Scene pressed =
-      read_scene_text(scene_of("fill: dense, mean_overlap: 1e-3, radius: 70 mm", periodic), ".");
+      read_scene_text(scene_of("fill: dense, mean_overlap: 1e-2, radius: 0.1", periodic), ".");
   EXPECT_THAT(pressed.notes,
               ElementsAre(testing::AllOf(HasSubstr("of r_a + r_b on average"), HasSubstr("contacts a ball"),
                                          HasSubstr("times those given"))));
