@@ -294,11 +294,13 @@ void list_kind(PairsByRule pairs, const model::Scene& scene, const contact::Cont
     const bool some = std::visit(
         [&](auto& concrete) {
           using Group = std::decay_t<decltype(concrete)>;
-          const Group* old = nullptr;
-          for (const AnyGroup& candidate : before.groups)
-            if (const auto* same = std::get_if<Group>(&candidate); same != nullptr && same->rule == rule)
-              old = same;
-          fill(concrete, old, pairs.of(rule), model, touching_only, touching);
+          if constexpr (std::is_same_v<typename Group::KinematicsType, Kinematics>) {
+            const Group* old = nullptr;
+            for (const AnyGroup& candidate : before.groups)
+              if (const auto* same = std::get_if<Group>(&candidate); same != nullptr && same->rule == rule)
+                old = same;
+            fill(concrete, old, pairs.of(rule), model, touching_only, touching);
+          }
           return !concrete.pairs.empty();
         },
         group);

@@ -6,6 +6,7 @@
 #include "eigengrain/contact/facet_choice.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 #ifdef __SANITIZE_ADDRESS__
 #define EIGENGRAIN_FLAT
@@ -86,9 +87,7 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
       contact::follow_facets(placement, group, static_cast<std::size_t>(plan.starts[chunk]),
                              static_cast<std::size_t>(plan.starts[chunk + 1]));
     });
-  // Flat: the small functions of kinematics and laws are many, and calls among them pass everything through
-  // memory. Not under sanitizers, whose checks make hundreds of megabytes of it.
-  const auto one_chunk = [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT {
+  const auto contacts_of = [&](std::int64_t chunk) {
     for (std::int64_t index = plan.starts[chunk]; index < plan.starts[chunk + 1]; ++index) {
       const auto c = static_cast<std::size_t>(index);
       const contact::Pair& pair = group.pairs[c];
@@ -122,7 +121,15 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
       }
     }
   };
-  for_chunks(std::ssize(sum.force), chunk_size_, one_chunk);
+  // The cycle's contacts of balls, which are nearly all there are, in one flat piece: the small functions of
+  // kinematics and laws are many, and calls among them pass everything through memory. It takes the compiler
+  // long, and under sanitizers hundreds of megabytes.
+  if constexpr (commit && Kinematics::second_is_body)
+    for_chunks(std::ssize(sum.force), chunk_size_,
+               [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT { contacts_of(chunk); });
+  else
+    for_chunks(std::ssize(sum.force), chunk_size_,
+               [&](std::int64_t, std::int64_t, std::int64_t chunk) { contacts_of(chunk); });
 }
 
 template <bool turns, bool commit, class ModelRef>
