@@ -70,6 +70,10 @@ int run_program(int argc, char** argv) {
   Options options;
   add_verb(program, "check", "read a scene, report every mistake, say what the model will consist of",
            options, check);
+  add_verb(program, "generate", "make the balls of a scene and write them to a file", options, generate)
+      ->add_option("--output", options.output, "a packing, or, where the name ends in .h5, a state")
+      ->required()
+      ->type_name("FILE");
   add_output(*add_verb(program, "run", "the explicit cycle, to the end that the scene names", options, run),
              options);
 #ifdef EIGENGRAIN_PETSC

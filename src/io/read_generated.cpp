@@ -48,8 +48,7 @@ std::optional<Region> region_of_cell(const Section& section, const model::Period
   for (int k = 0; k < 3; ++k) {
     if (cell.periodic[k]) continue;
     section.report_missing(
-        "box", cell.any() ? fmt::format(", which the region needs, as the cell does not repeat along "
-                                        "{}",
+        "box", cell.any() ? fmt::format(", which the region needs, as the cell does not repeat along {}",
                                         axis_names[k])
                           : ", which says where the balls go");
     return std::nullopt;
@@ -215,7 +214,7 @@ void read_lattice(const Section& section, const BallKind& kind, const SceneDraft
 
 void read_fill(const Section& section, const BallKind& kind, SceneDraft& draft, BallList& balls) {
   const auto wish = read_wish(section, draft.scene.cell);
-  if (!wish) return;
+  if (!wish || kind.material < 0) return;  // a packing may take minutes, and this scene is refused anyway
   std::string note;
   add_made(section, "fill", kind, balls, [&] { return fill(*wish, note); });
   if (!note.empty()) draft.scene.notes.push_back(fmt::format("{}: {}", section.path(), note));

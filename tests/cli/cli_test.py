@@ -102,6 +102,46 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("cannot write", done.stderr)
 
+    def test_generate_writes_balls_that_the_reader_takes_back_to_the_bit(self):
+        made = self.scene(PAIR.split("balls:")[0] + """
+periodic: {box: [0.1, 0.1, 0.1]}
+balls: [{fill: dense, fraction: 0.5, sizes: {distribution: uniform, min: 4 mm, max: 6 mm}, material: glass}]
+""")
+        packing, again = self.folder / "packing.txt", self.folder / "again.txt"
+        text, report = self.succeed("generate", made, "--output", packing)
+        self.assertIn("910 balls at a solid fraction of 0.49985", text)  # half a ball of 6 mm is 0.00045
+        self.assertIn("none overlap", text)
+        rows = [line for line in packing.read_text().splitlines() if not line.startswith("#")]
+        self.assertEqual(report["balls"], len(rows))
+        self.succeed("generate", made, "--output", again, "--threads", 1)
+        self.assertEqual(packing.read_bytes(), again.read_bytes())
+        self.succeed("generate", made, "--output", again, "--set", "balls.0.seed=2")
+        self.assertNotEqual(packing.read_bytes(), again.read_bytes())
+        self.succeed("generate", made, "--output", again, "--set", "balls=[{file: packing.txt, material: glass}]")
+        self.assertEqual(rows, [line for line in again.read_text().splitlines() if not line.startswith("#")])
+
+    def test_generate_writes_a_state_that_run_continues_from(self):
+        lattice = PAIR.split("balls:")[0] + """
+balls: [{lattice: sc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03]}, material: glass}]
+"""
+        state = self.folder / "lattice.h5"
+        self.succeed("generate", self.scene(lattice), "--output", state)
+        _, report = self.succeed("run", state, "--set", "run.steps=2", "--output", self.folder)
+        self.assertEqual(report["step"], 2)
+        done = self.run_program("generate", state, "--output", self.folder / "x.txt")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("a state has its balls already", done.stderr)
+
+    def test_generate_says_what_a_packing_file_cannot_hold(self):
+        scene = self.scene(PAIR)
+        text, report = self.succeed("generate", scene, "--output", self.folder / "a.txt", "--set", "balls.0.fix=[x]")
+        self.assertIn("fixed components are not in it", text)
+        done = self.run_program("generate", scene)
+        self.assertEqual(done.returncode, 2)
+        done = self.run_program("generate", scene, "--output", self.folder / "no" / "a.txt")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("a.txt", done.stderr)
+
     def test_help_and_version_succeed(self):
         for arguments in (["--help"], ["--version"], ["check", "--help"], ["schema"]):
             self.assertEqual(self.run_program(*arguments).returncode, 0, arguments)

@@ -138,16 +138,16 @@ TEST(DensePacking, TakesManySizes) {
 }
 
 TEST(DensePacking, IsTheSameToTheBitOnAnyNumberOfThreads) {
-  const Region region = cube_for(3000, 0.58);  // three chunks of bodies
+  const Region region = cube_for(10000, 0.5);  // three chunks of balls
   std::vector<std::vector<Vec3>> results;
   for (const int count : {1, 2, 4}) {
     set_threads(count);
-    results.push_back(packed(3000, region).balls.position);
+    results.push_back(packed(10000, region).balls.position);
   }
   set_threads(0);
   EXPECT_EQ(results[1], results[0]);
   EXPECT_EQ(results[2], results[0]);
-  EXPECT_NE(packed(3000, region, 2).balls.position, results[0]);
+  EXPECT_NE(packed(10000, region, 2).balls.position, results[0]);
 }
 
 TEST(DensePacking, RefusesWhatIsNoPacking) {
