@@ -52,8 +52,8 @@ TEST(StateFile, TheSceneOfTheseTestsHasContactsWithHistoryAndWithout) {
         },
         group);
   }
-  // With history and without, each of balls and walls; io_state_laws_test.cpp has all laws.
-  EXPECT_EQ(kinds.size(), 4U);
+  // With history and without, each of balls, planes and facets; io_state_laws_test.cpp has all laws.
+  EXPECT_EQ(kinds.size(), 6U);
   EXPECT_EQ(rules, (std::set<std::int32_t>{0, 2, 3}));
   EXPECT_TRUE(images);
 }
