@@ -91,11 +91,13 @@ void Section::report_unknown_key(const Node& child) const {
 }
 
 std::string Section::takes() const {
-  std::string names;
+  std::vector<std::string_view> names_once;  // laws share some of their keys
   for (const KeyDescription* key : keys_) {
     if (!law_.empty() && key->law.empty()) continue;  // what the user looks for is a parameter of the law
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", key->name());
+    if (std::find(names_once.begin(), names_once.end(), key->name()) == names_once.end())
+      names_once.push_back(key->name());
   }
+  const std::string names = fmt::format("{}", fmt::join(names_once, ", "));
   if (!law_.empty())
     return fmt::format("a {} contact takes {}", law_, names.empty() ? "no parameters" : names);
   if (pattern_.empty()) return fmt::format("a scene takes {}", names);
