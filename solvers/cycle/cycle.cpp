@@ -59,12 +59,7 @@ State start(const model::Scene& scene) {
   if (bodies.velocity.empty()) bodies.velocity.assign(count, Vec3::Zero());
   if (bodies.spin.empty() && assembly::needs_rotation(scene)) bodies.spin.assign(count, Vec3::Zero());
   assembly::begin_list(state);
-
-  assembly::BodyForces forces;
-  assembly::ContactForceSum(state.model, state.turns())
-      .advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0}, forces);
-  state.force = std::move(forces.force);
-  state.moment = std::move(forces.moment);
+  assembly::renew_forces(state);
   return state;
 }
 

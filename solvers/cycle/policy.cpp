@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace eigengrain::cycle {
 namespace {
@@ -64,14 +65,28 @@ struct FirstContact {
   double bound = infinity;  ///< of the ball's block, local damping and dashpots included: proven
 };
 
+/// No ball meets another or a wall faster, m/s.
+double fastest_approach(const assembly::State& state) {
+  double ball = 0;
+  for (const Vec3& v : state.model.bodies.velocity) ball = std::max(ball, v.norm());
+  double other = ball;
+  const std::vector<model::WallMotion>& motions = state.model.wall_motions;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const model::WallVelocity velocity = motions[m].at(state.time);
+    const double lever = m < state.list.wall_lever.size() ? state.list.wall_lever[m] : 0.0;
+    const double servo = motions[m].servo ? motions[m].servo->max_speed : 0.0;
+    other = std::max(other, velocity.translation.norm() + lever * velocity.spin.norm() + servo);
+  }
+  return ball + other;
+}
+
 /// Of balls that touch nothing yet, for any head-on contact that the rules of the scene allow.
 FirstContact first_contact(const assembly::State& state, std::span<const std::int32_t> balls) {
   FirstContact result;
   const model::Scene& settings = state.settings;
   const model::Bodies& bodies = state.model.bodies;
   const double damping = state.model.local_damping;
-  double approach = 0;  // two balls at most, each as fast as the fastest, m/s
-  for (const Vec3& v : bodies.velocity) approach = std::max(approach, 2 * v.norm());
+  const double approach = fastest_approach(state);
   const auto materials = static_cast<std::int32_t>(settings.materials.size());
   for (std::int32_t a = 0; a < materials; ++a) {
     const auto ball = lightest(bodies, balls, a);
@@ -109,10 +124,13 @@ double estimate(const assembly::State& state) {
   return std::min(diagonal_estimate(system), first_contact(state, system.unknowns.set_aside()).estimate);
 }
 
-double bound(const assembly::State& state) {
+/// Where stiffness varies, a near pair is listed with that of a typical overlap, and its impact counts as
+/// well.
+double bound(const assembly::State& state, bool varies) {
   const assembly::LinearSystem system(state.model, assembly::Listed::all);
-  return std::min(damped_block_bound(system, state.model.local_damping),
-                  first_contact(state, system.unknowns.set_aside()).bound);
+  const std::vector<std::int32_t> apart =
+      varies ? assembly::LinearSystem(state.model).unknowns.set_aside() : system.unknowns.set_aside();
+  return std::min(damped_block_bound(system, state.model.local_damping), first_contact(state, apart).bound);
 }
 
 /// Whether stiffnesses follow the overlap, so that a step has to be asked for while nothing opens or closes.
@@ -127,6 +145,13 @@ bool stiffness_varies(const model::Scene& settings) {
   return varies;
 }
 
+/// Between lists a bound holds, but where stiffnesses follow the overlap, or balls come to touch other
+/// triangles.
+std::int64_t between_bounds(const model::Scene& settings, bool varies) {
+  if (varies) return steps_between_varying;
+  return settings.surfaces.empty() ? 0 : steps_between_estimates;
+}
+
 }  // namespace
 
 TimestepPolicy policy_of(const model::Scene& settings) {
@@ -136,8 +161,8 @@ TimestepPolicy policy_of(const model::Scene& settings) {
     case model::TimestepPolicy::fixed:
       return {[dt = choice.dt.value_or(0)](const assembly::State&) { return dt; }, 0};
     case model::TimestepPolicy::bound:
-      return {[choice](const assembly::State& state) { return choice.safety * bound(state); },
-              varies ? steps_between_varying : 0};
+      return {[choice, varies](const assembly::State& state) { return choice.safety * bound(state, varies); },
+              between_bounds(settings, varies)};
     case model::TimestepPolicy::estimate:
       break;
   }

@@ -93,7 +93,9 @@ Movers movers_of(const State& state, double force) {
         model::free_part(state.force[i] + bodies.mass[i] * state.model.gravity, fixed.translation()).norm();
     const double turn =
         state.turns() ? model::free_part(state.moment[i], fixed.rotation()).norm() / bodies.radius[i] : 0.0;
-    if (std::max(push, turn) > force) {
+    // Nothing touches a body without any force, and gravity takes it along, however light it is.
+    const bool falls = push > 0 && state.force[i].isZero(0);
+    if (falls || std::max(push, turn) > force) {
       movers.bodies.push_back(body);
     } else {
       pushes += push;
@@ -136,7 +138,11 @@ Part::Part(State& whole, std::span<const std::int32_t> movers) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     state_.force.push_back(whole.force[bodies_[k]]);
     if (whole.turns()) state_.moment.push_back(whole.moment[bodies_[k]]);
-    if (free_[k] == 0) state_.model.bodies.fixed[k] = held;
+    if (free_[k] != 0) continue;
+    // A fixed body keeps its velocity, and one that was free in another part has some.
+    state_.model.bodies.fixed[k] = held;
+    state_.model.bodies.velocity[k].setZero();
+    if (whole.turns()) state_.model.bodies.spin[k].setZero();
   }
   position_ = state_.model.bodies.position;
   state_.list.skin = whole.list.skin;
@@ -163,15 +169,7 @@ void Part::put_back(const State& part, State& whole) const {
   part.model.contacts.for_each_group(
       [&](const auto& group) { append(group, free_, bodies_, matching(whole.model.contacts, group)); });
   assembly::renew_list(whole, whole.list.skin);
-
-  assembly::BodyForces sum;
-  const std::vector<Vec3> still(bodies.position.size(), Vec3::Zero());
-  assembly::ContactForceSum(whole.model, whole.turns())
-      .advance(whole.model,
-               {bodies.position, still, whole.turns() ? std::span(still) : std::span<const Vec3>(), 1.0},
-               sum);
-  whole.force = std::move(sum.force);
-  whole.moment = std::move(sum.moment);
+  assembly::renew_forces(whole);
 }
 
 }  // namespace eigengrain::relaxation

@@ -8,8 +8,8 @@
 
 namespace eigengrain::relaxation {
 
-/// Bodies that are pushed or turned by more than a force (moments count over the radius): rolling, sliding or
-/// falling.
+/// Bodies that are pushed or turned by more than a force (moments count over the radius), or that fall:
+/// nothing touches them.
 struct Movers {
   std::vector<std::int32_t> bodies;  ///< in storage order
   double rest = 0;  ///< sum of the pushes on all others, or of their turns if that is more, N

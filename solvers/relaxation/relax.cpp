@@ -35,6 +35,9 @@ constexpr double newton_margin = 0.3;
 /// Over the rounding floor; less cannot be asked of positions in doubles.
 constexpr double floor_margin = 1.5;
 
+/// What the commit of a step may add to the least ratio.
+constexpr double rounding_margin = 2;
+
 /// Largest over mean ratio where bodies still fall or roll: there Newton is asked in vain.
 constexpr double settled_max = 100;
 /// Over the mean ratio, from where on a body counts as moving while others rest, and how many of all may do
@@ -51,12 +54,13 @@ bool settled_within(const Balance& balance, double ratio) {
   return at_rest_within(balance, ratio) && std::max(balance.max, balance.moment_max) <= settled_max * ratio;
 }
 
-/// Everything stands still at a moment of its own.
+/// Everything stands still at a moment of its own, and dashpots do nothing.
 void halt(State& state) {
   for (Vec3& v : state.model.bodies.velocity) v.setZero();
   for (Vec3& w : state.model.bodies.spin) w.setZero();
   state.dt = 0;
   state.next_dt = 0;
+  assembly::renew_forces(state);
 }
 
 class Relaxation {
@@ -77,16 +81,19 @@ class Relaxation {
     bool newton_failed = false;
     while (!at_rest_within(result_.end, options_.tolerance) && !given_up()) {
       const double least = std::max(options_.tolerance, floor_margin * result_.end.floor);
-      if (newton_failed || !settled_within(result_.end, hand_over)) approach(std::max(hand_over, least));
-      if (!settled_within(result_.end, hand_over) && !given_up()) {
-        settle_movers(std::max(hand_over, least));
+      const double ratio = std::max(hand_over, least);
+      if (newton_failed || !settled_within(result_.end, ratio)) approach(ratio);
+      if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
+      if (!settled_within(result_.end, ratio)) {
+        settle_movers(ratio);
         continue;
       }
-      if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
-      newton_failed = !finish();
-      if (newton_failed) hand_over /= 10;
-      // Newton has done all that rounding allows, and that is not enough.
-      if (!newton_failed && !at_rest_within(result_.end, options_.tolerance)) break;
+      // What is found is all that rounding allows, even if it is not enough; but over meshes a committed
+      // state may touch other triangles than Newton's method knew.
+      if (finish() && at_rest_within(result_.end, rounding_margin * least)) break;
+      newton_failed = true;
+      if (hand_over <= least) break;
+      hand_over /= 10;
     }
     halt(state_);
     given.restore(state_);
@@ -158,6 +165,7 @@ class Relaxation {
     } while (!settled_within(result_.end, ratio) && !few_move(cycle.state(), ratio) && !given_up());
     state_ = cycle.release();
     halt(state_);
+    result_.end = assembly::balance_of(state_);
     note_method("explicit");
     result_.explicit_seconds += watch.seconds();
   }
@@ -188,8 +196,10 @@ class Relaxation {
       Part part(state_, movers.bodies);
       cycle::Cycle cycle(std::move(part.state()), policy());
       do {
-        cycle.run(steps_between_looks);
-        result_.part_steps += steps_between_looks;
+        for (int k = 0; k < steps_between_looks && part.has_room(cycle.state()); ++k) {
+          cycle.step();
+          ++result_.part_steps;
+        }
         interrupted_ = options_.interrupted && options_.interrupted();
       } while (!movers_of(cycle.state(), force).bodies.empty() && part.has_room(cycle.state()) && go_on());
       part.put_back(cycle.state(), state_);

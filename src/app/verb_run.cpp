@@ -82,13 +82,18 @@ class Goal {
       state.step, trouble.what, names, cause, outputs.saved_step(), outputs.state_file().string()));
 }
 
+cycle::Cycle started(assembly::State state) {
+  cycle::TimestepPolicy policy = cycle::policy_of(state.settings);  // before the state is moved
+  return {std::move(state), std::move(policy)};
+}
+
 /// One run, from an input to its goal.
 class Run {
  public:
   explicit Run(Input input)
       : goal_(input.state.settings.run),
         outputs_(input),
-        cycle_(std::move(input.state), cycle::policy_of(input.state.settings)),
+        cycle_(started(std::move(input.state))),
         watch_(cycle_.state()),
         verdict_(judge_step(state(), state().next_dt)),
         first_step_(state().step) {}

@@ -1,5 +1,7 @@
 #include "eigengrain/assembly/balance.hpp"
 
+#include "eigengrain/assembly/acting.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,29 +33,25 @@ double rounding_along(const Vec3& n, const Vec3& x) {
 
 Survey survey(const Model& model) {
   Survey result{std::vector<Touch>(static_cast<std::size_t>(model.bodies.size())), 0, 0.0};
-  const contact::Placement placement = model.placement();
-  model.contacts.for_each_group([&](const auto& group) {
+  for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
-    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      const contact::Pair& pair = group.pairs[c];
-      const contact::ContactMotion motion = contact::at_rest(Kinematics::geometry(placement, pair));
-      if (!group.law.acts(motion, group.states[c])) continue;
-      typename Group::State discarded;
-      result.force += group.law.evaluate(motion, group.states[c], discarded).force.norm();
-      ++result.contacts;
-      const double k = group.law.stiffness(motion, group.states[c]).normal;
-      double rounding = rounding_along(motion.normal, model.bodies.position[pair.a]);
-      if constexpr (Kinematics::second_is_body)
-        rounding += rounding_along(motion.normal, model.bodies.position[pair.b]);
-      const auto add = [&](std::int32_t body) {
-        ++result.touch[body].contacts;
-        result.touch[body].rounding += k * k * rounding;
-      };
-      add(pair.a);
-      if constexpr (Kinematics::second_is_body)
-        if (pair.b != pair.a) add(pair.b);
-    }
+    const contact::Pair& pair = group.pairs[c];
+    const contact::ContactMotion motion = contact::at_rest(geometry);
+    typename Group::State discarded;
+    result.force += group.law.evaluate(motion, group.states[c], discarded).force.norm();
+    ++result.contacts;
+    const double k = group.law.stiffness(motion, group.states[c]).normal;
+    double rounding = rounding_along(motion.normal, model.bodies.position[pair.a]);
+    if constexpr (Kinematics::second_is_body)
+      rounding += rounding_along(motion.normal, model.bodies.position[pair.b]);
+    const auto add = [&](std::int32_t body) {
+      ++result.touch[body].contacts;
+      result.touch[body].rounding += k * k * rounding;
+    };
+    add(pair.a);
+    if constexpr (Kinematics::second_is_body)
+      if (pair.b != pair.a) add(pair.b);
   });
   return result;
 }

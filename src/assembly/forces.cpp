@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/forces.hpp"
 
+#include "eigengrain/assembly/state.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/parallel.hpp"
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <type_traits>
+#include <utility>
 
 #ifdef __SANITIZE_ADDRESS__
 #define EIGENGRAIN_FLAT
@@ -171,6 +173,15 @@ void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum)
   } catch (const contact::CentreOnFacet& found) {
     throw centre_on_facet(model, found);
   }
+}
+
+void renew_forces(State& state) {
+  const model::Bodies& bodies = state.model.bodies;
+  BodyForces sum;
+  ContactForceSum(state.model, state.turns())
+      .advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0}, sum);
+  state.force = std::move(sum.force);
+  state.moment = std::move(sum.moment);
 }
 
 BodyForces contact_forces(const Model& model, const Displacement& displacement) {

@@ -20,7 +20,8 @@ std::vector<double> mass_diagonal(const model::Bodies& bodies, const Unknowns& u
 bool has_dashpots(const Model& model) {
   bool found = false;
   model.contacts.for_each_group([&](const auto& group) {
-    found = found || contact::asks_rate<typename std::decay_t<decltype(group)>::LawType>;
+    if constexpr (contact::asks_rate<typename std::decay_t<decltype(group)>::LawType>)
+      found = found || group.law.damping().normal > 0 || group.law.damping().shear > 0;
   });
   return found;
 }

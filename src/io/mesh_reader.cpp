@@ -187,27 +187,30 @@ std::string text_of(const Vec3& x) {
 void report_problems(const model::Surface& surface, const std::string& name, Diagnostics& diagnostics) {
   using Kind = SurfaceProblem::Kind;
   for (const SurfaceProblem& p : model::problems_of(surface)) {
+    const auto add = [&](std::string message, const char* kind) {
+      diagnostics.add({name, 0}, std::move(message), kind);
+    };
     switch (p.kind) {
       case Kind::degenerate:
-        diagnostics.add({name, 0},
-                        fmt::format("triangle {} at {} has no area; remove it, or merge its corners in the "
-                                    "program that made the mesh",
-                                    p.first + 1, text_of(p.place)),
-                        "degenerate");
+        add(fmt::format(
+                "triangle {} at {} has no area; remove it, or merge its corners in the program that made the "
+                "mesh",
+                p.first + 1, text_of(p.place)),
+            "degenerate");
         break;
       case Kind::branching:
-        diagnostics.add({name, 0},
-                        fmt::format("more than two triangles (the first are {} and {}) share the edge at {}; "
-                                    "give every edge one or two",
-                                    p.first + 1, p.second + 1, text_of(p.place)),
-                        "branching");
+        add(fmt::format(
+                "more than two triangles (the first are {} and {}) share the edge at {}; give every edge one "
+                "or two",
+                p.first + 1, p.second + 1, text_of(p.place)),
+            "branching");
         break;
       case Kind::inconsistent:
-        diagnostics.add({name, 0},
-                        fmt::format("triangles {} and {} share the edge at {} and face opposite ways, so the "
-                                    "active side is not clear; turn one around, or write \"two_sided: true\"",
-                                    p.first + 1, p.second + 1, text_of(p.place)),
-                        "inconsistent");
+        add(fmt::format(
+                "triangles {} and {} share the edge at {} and face opposite ways, so the active side is not "
+                "clear; turn one around, or write \"two_sided: true\"",
+                p.first + 1, p.second + 1, text_of(p.place)),
+            "inconsistent");
         break;
     }
   }

@@ -7,14 +7,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
+#include <span>
+#include <sstream>
+#include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace eigengrain::io {
 namespace {
 
 using contact::Pair;
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
 
 /// Reads one group.
 class GroupReader {
@@ -59,11 +70,8 @@ class GroupReader {
     }
     check_pairs<typename Group::KinematicsType>(group.pairs);
     check_rules<typename Group::KinematicsType>(group);
-    const std::string stored = file_.text(path_, "state_fields");
-    if (stored == layout::state_fields<typename Group::LawType>())
-      read_states(group);
-    else
-      form_states(group);
+    form_states(group);
+    read_states(group);
   }
 
   std::vector<Pair> read_pairs() const {
@@ -132,13 +140,19 @@ class GroupReader {
     }
   }
 
+  /// The parts of the history that the file has; a part of the law that has come on since, such as a dashpot,
+  /// keeps what it starts with.
   template <class Group>
   void read_states(Group& group) const {
-    group.states.resize(group.pairs.size());
     if constexpr (!std::is_empty_v<typename Group::State>) {
+      const std::vector<std::string> stored = words_of(file_.text(path_, "state_fields"));
       std::size_t offset = 0;
       for (const contact::StateField& field : Group::LawType::state_fields) {
         const auto components = static_cast<std::size_t>(field.components);
+        if (std::find(stored.begin(), stored.end(), field.name) == stored.end()) {
+          offset += components * sizeof(double);
+          continue;
+        }
         const std::vector<double> values = file_.read_doubles(fmt::format("{}/{}", path_, field.name),
                                                               group.states.size(), field.components);
         for (std::size_t c = 0; c < group.states.size(); ++c) {

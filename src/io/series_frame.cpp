@@ -1,5 +1,6 @@
 #include "series_frame.hpp"
 
+#include "eigengrain/assembly/acting.hpp"
 #include "eigengrain/base/assert.hpp"
 
 #include "atomic_file.hpp"
@@ -89,18 +90,28 @@ std::vector<T> gathered(const std::vector<T>& column, const std::vector<std::int
 /// How many contacts act on each body; one with the body's own image counts at both of its ends.
 std::vector<std::int32_t> acting_contacts(const assembly::Model& model) {
   std::vector<std::int32_t> count(model.bodies.position.size());
-  const contact::Placement placement = model.placement();
-  model.contacts.for_each_group([&](const auto& group) {
-    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
-    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      const contact::Pair& pair = group.pairs[c];
-      const contact::ContactMotion motion = contact::at_rest(Kinematics::geometry(placement, pair));
-      if (!group.law.acts(motion, group.states[c])) continue;
-      ++count[static_cast<std::size_t>(pair.a)];
-      if (Kinematics::second_is_body) ++count[static_cast<std::size_t>(pair.b)];
-    }
+  assembly::for_each_acting(model, [&](const auto& group, std::size_t c, const auto& /*geometry*/) {
+    const contact::Pair& pair = group.pairs[c];
+    ++count[static_cast<std::size_t>(pair.a)];
+    if (std::decay_t<decltype(group)>::KinematicsType::second_is_body)
+      ++count[static_cast<std::size_t>(pair.b)];
   });
   return count;
+}
+
+constexpr std::string_view frame_head =
+    "<?xml version=\"1.0\"?>\n"
+    "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+    "<UnstructuredGrid>\n";
+
+/// xml: from frame_head to the last of the cells' arrays.
+void write_frame(const std::filesystem::path& file, const std::string& xml, const AppendedArrays& arrays) {
+  AtomicFile output(file);
+  output.write(xml);
+  output.write("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+  arrays.write(output);
+  output.write("\n</AppendedData>\n</VTKFile>\n");
+  output.commit();
 }
 
 template <class T>
@@ -121,10 +132,7 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
     return arrays.add(name, count, [&rows, from = &values] { return gathered(*from, rows); });
   };
 
-  std::string xml =
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n";
+  std::string xml = std::string(frame_head) + "<FieldData>\n";
   constexpr std::string_view one_tuple = R"( NumberOfTuples="1")";
   xml += arrays.add(
       "TimeValue", 1, [&] { return std::vector{state.time}; }, one_tuple);
@@ -146,13 +154,7 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
   xml += arrays.add("connectivity", count, [=] { return numbered_from<std::int64_t>(0, count); });
   xml += arrays.add("offsets", count, [=] { return numbered_from<std::int64_t>(1, count); });
   xml += arrays.add("types", count, [=] { return std::vector<std::uint8_t>(count, vtk_vertex); });
-  xml += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-
-  AtomicFile output(file);
-  output.write(xml);
-  arrays.write(output);
-  output.write("\n</AppendedData>\n</VTKFile>\n");
-  output.commit();
+  write_frame(file, xml, arrays);
 }
 
 void write_surface_frame(const std::filesystem::path& file, const assembly::Model& model) {
@@ -175,11 +177,8 @@ void write_surface_frame(const std::filesystem::path& file, const assembly::Mode
   const auto given = [&](std::string_view name, const auto& values) {
     return arrays.add(name, values.size(), [from = &values] { return *from; });
   };
-  std::string xml = fmt::format(
-      "<?xml version=\"1.0\"?>\n"
-      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-      points.size(), cells);
+  std::string xml =
+      fmt::format("{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", frame_head, points.size(), cells);
   xml += "<CellData Scalars=\"wall\">\n" + given("wall", walls) + "</CellData>\n";
   xml += "<Points>\n" + given("Points", points) + "</Points>\n<Cells>\n" + given("connectivity", corners);
   xml += arrays.add("offsets", cells, [=] {
@@ -188,13 +187,7 @@ void write_surface_frame(const std::filesystem::path& file, const assembly::Mode
     return ends;
   });
   xml += arrays.add("types", cells, [=] { return std::vector<std::uint8_t>(cells, vtk_triangle); });
-  xml += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-
-  AtomicFile output(file);
-  output.write(xml);
-  arrays.write(output);
-  output.write("\n</AppendedData>\n</VTKFile>\n");
-  output.commit();
+  write_frame(file, xml, arrays);
 }
 
 }  // namespace eigengrain::io

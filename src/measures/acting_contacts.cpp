@@ -1,8 +1,10 @@
 #include "eigengrain/measures/acting_contacts.hpp"
 
+#include "eigengrain/assembly/acting.hpp"
 #include "eigengrain/base/adjacency.hpp"
 
 #include <cstddef>
+#include <type_traits>
 
 namespace eigengrain::measures {
 namespace {
@@ -14,14 +16,15 @@ Vec3 across(const Vec3& v, const Vec3& n) {
 /// After a slip the shear force is at the limit to rounding only, so the contact is probed with a little
 /// more.
 template <class Law, class State>
-bool slides(const Law& law, const contact::ContactMotion& motion, const State& state, const Vec3& force) {
+bool slides(const Law& law, const contact::ContactMotion& motion, const State& state) {
+  State discarded;
+  const Vec3 force = law.evaluate(motion, state, discarded).force;
   constexpr double probe = 1e-6;  // of the shear force
   const double shear = across(force, motion.normal).norm();
   const double stiffness = law.stiffness(motion, state).shear;
   if (!(shear > 0) || !(stiffness > 0)) return false;
   contact::ContactMotion more = motion;
   more.displacement = -probe / stiffness * across(force, motion.normal);
-  State discarded;
   const double raised = across(law.evaluate(more, state, discarded).force, motion.normal).norm();
   return raised - shear < 0.5 * probe * shear;
 }
@@ -30,29 +33,17 @@ bool slides(const Law& law, const contact::ContactMotion& motion, const State& s
 
 std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
   std::vector<ActingContact> result;
-  const contact::Placement placement = model.placement();
-  model.contacts.for_each_group([&](const auto& group) {
-    using Group = std::decay_t<decltype(group)>;
-    using Kinematics = typename Group::KinematicsType;
-    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      const contact::Pair& pair = group.pairs[c];
-      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
-      const contact::ContactMotion motion = contact::at_rest(geometry);
-      if (!group.law.acts(motion, group.states[c])) continue;
-      typename Group::State discarded;
-      ActingContact& contact = result.emplace_back();
-      contact.a = pair.a;
-      contact.normal = geometry.normal;
-      contact.force = group.law.evaluate(motion, group.states[c], discarded).force;
-      contact.slides = slides(group.law, motion, group.states[c], contact.force);
-      if constexpr (Kinematics::second_is_body) {
-        contact.b = pair.b;
-        contact.branch = geometry.lever_a - geometry.lever_b;
-      } else {
-        contact.b = ActingContact::wall;
-        contact.branch = geometry.lever_a;
-      }
-    }
+  assembly::for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    const contact::Pair& pair = group.pairs[c];
+    ActingContact& found = result.emplace_back();
+    found.a = pair.a;
+    found.normal = geometry.normal;
+    found.force = contact::force_now(group.law, geometry, group.states[c]).force;
+    found.slides = slides(group.law, contact::at_rest(geometry), group.states[c]);
+    found.b = Kinematics::second_is_body ? pair.b : ActingContact::wall;
+    found.branch = geometry.lever_a;
+    if constexpr (Kinematics::second_is_body) found.branch -= geometry.lever_b;
   });
   return result;
 }

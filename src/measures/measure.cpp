@@ -1,5 +1,7 @@
 #include "eigengrain/measures/measure.hpp"
 
+#include "eigengrain/assembly/acting.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
@@ -32,18 +34,12 @@ Mat3 mean_stress(const Window& window, const assembly::Model& model,
 
 std::vector<Mat3> body_stresses(const assembly::Model& model) {
   std::vector<Mat3> stress(model.bodies.position.size(), Mat3::Zero());
-  const contact::Placement placement = model.placement();
-  model.contacts.for_each_group([&](const auto& group) {
-    using Group = std::decay_t<decltype(group)>;
-    using Kinematics = typename Group::KinematicsType;
-    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      const contact::Pair& pair = group.pairs[c];
-      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
-      typename Group::State discarded;
-      const Vec3 force = group.law.evaluate(contact::at_rest(geometry), group.states[c], discarded).force;
-      stress[pair.a] -= force * geometry.lever_a.transpose();
-      if constexpr (Kinematics::second_is_body) stress[pair.b] += force * geometry.lever_b.transpose();
-    }
+  assembly::for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    const contact::Pair& pair = group.pairs[c];
+    const Vec3 force = contact::force_now(group.law, geometry, group.states[c]).force;
+    stress[pair.a] -= force * geometry.lever_a.transpose();
+    if constexpr (Kinematics::second_is_body) stress[pair.b] += force * geometry.lever_b.transpose();
   });
   for (std::size_t i = 0; i < stress.size(); ++i)
     stress[i] /= 4 * std::numbers::pi / 3 * std::pow(model.bodies.radius[i], 3);

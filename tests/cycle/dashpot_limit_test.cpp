@@ -5,6 +5,7 @@
 
 #include "support/laws.hpp"
 #include "support/motion.hpp"
+#include "support/surfaces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -141,6 +142,39 @@ TEST(Policies, JudgeFirstContactsWithTheirDashpotsAndTheirImpact) {
     return cycle::policy_of(scene.scene()).dt(cycle::start(scene.scene()));
   };
   EXPECT_LT(step(faster), 0.8 * step(fast));
+}
+
+// The springs of a law that could have dashpots are not damped by that.
+TEST(Policies, KnowNoDashpotsWhereTheirRatiosAreZero) {
+  SceneBuilder builder = with_law("hertz", {{"effective_young", 1e6}});
+  builder.ball({0, 0, 1 - 1e-3}).plane({0, 0, 0}, {0, 0, 1});
+  EXPECT_TRUE(assembly::LinearSystem(builder.build()).damping.empty());
+  builder.scene().contacts[0].parameters = values_of("hertz", {{"effective_young", 1e6}, {"beta_n", 0.1}});
+  EXPECT_FALSE(assembly::LinearSystem(builder.build()).damping.empty());
+}
+
+// A ball that is near enough to be listed has its impact still before it, and so has one that a wall runs
+// into.
+TEST(Policies, CountTheImpactOfANearBallAndOfAWall) {
+  const auto step = [](double height, double ball, double wall) {
+    SceneBuilder builder = with_law("hertz", {{"effective_young", 1e6}});
+    builder.ball({0, 0, 1 + height}).moving({0, 0, -ball}).plane({0, 0, 0}, {0, 0, 1}).carried({0, 0, wall});
+    model::Scene& scene = builder.scene();
+    scene.timestep = {model::TimestepPolicy::bound, 1.0, {}};
+    return cycle::policy_of(scene).dt(cycle::start(scene));
+  };
+  EXPECT_EQ(step(1e-3, 100, 0), step(5, 100, 0));  // listed or not
+  EXPECT_LT(step(1e-3, 100, 0), 0.8 * step(1e-3, 1, 0));
+  EXPECT_EQ(step(5, 0, 200), step(5, 100, 0));  // two such balls meet as fast
+}
+
+// Where a ball may come to touch another triangle without a new list, the bound is asked for in between.
+TEST(Policies, AskForTheBoundInBetweenWhereThereAreSurfaces) {
+  SceneBuilder builder;
+  builder.scene().timestep = {model::TimestepPolicy::bound, 1.0, {}};
+  EXPECT_EQ(cycle::policy_of(builder.scene()).every, 0);
+  builder.surface(flat(2, 1));
+  EXPECT_GT(cycle::policy_of(builder.scene()).every, 0);
 }
 
 // A stiffness that follows the overlap has to be asked for while contacts only get deeper.

@@ -65,14 +65,7 @@ TEST(Friction, MakesASlidingBallRollAtFiveSeventhsOfItsSpeed) {
   const double slips_until = cycle.state().time;
   // The spring holds back the full force from the first steps on (μ m g/k_s is a way of 5e-7 at u₀ = 1e-3).
   EXPECT_NEAR(slips_until, stop, 4 * dt);
-  double u = 0;
-  double surface = 0;
-  constexpr int steps = 4000;
-  for (int k = 0; k < steps; ++k) {
-    cycle.step();
-    u += velocity_of(cycle.state(), 0).x() / steps;
-    surface += (velocity_of(cycle.state(), 0).x() - spin_of(cycle.state(), 0).y()) / steps;
-  }
+  const auto [u, surface] = mean_motion(cycle, 4000);
   // The spring goes on swinging: ±μ g/√(3.5 k_s) = 2e-7 in the speed, less than 1e-2 of that in the mean.
   EXPECT_NEAR(u, 5 * u0 / 7, 1e-5 * u0);
   EXPECT_NEAR(surface, 0, 1e-5 * u0);

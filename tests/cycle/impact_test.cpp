@@ -1,6 +1,7 @@
 // Impacts against closed forms: restitution of dashpots and of the hysteretic spring, and the tests of Chung
 // and Ooi (Granular Matter 13:643, 2011). Planes are rigid. Steps are parts of the time of the impact.
 #include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/measures/measure.hpp"
 
 #include "support/laws.hpp"
 #include "support/motion.hpp"
@@ -241,6 +242,25 @@ TEST(Dashpots, AreAPartOfTheForceOnAWall) {
   }
   // It is not the spring's alone: c v = 1e-3 is far more than k U in the beginning.
   EXPECT_GT(std::abs(cycle.state().force[0].z()), 1.1 * (1 - position_of(cycle.state(), 0).z()));
+}
+
+// A ball between two plates that near each other: the mean stress times the area is what the plates feel,
+// dashpots included.
+TEST(Dashpots, AreAPartOfTheStress) {
+  constexpr double dt = 1e-3;
+  SceneBuilder builder = with_law("linear", {{"kn", 1}, {"beta_n", 0.5}});
+  builder.ball({0, 0, 0.999}).plane({0, 0, 0}, {0, 0, 1}).carried({0, 0, 1e-3});
+  builder.plane({0, 0, 1.998}, {0, 0, -1}).carried({0, 0, -1e-3});
+  Cycle cycle = cycle_of(std::move(builder), dt);
+  cycle.run(10);
+  const assembly::Model& model = cycle.state().model;
+  const double felt = assembly::wall_forces(model)[1].z();
+  const double overlap = 1 - 0.999 + 10 * dt * 1e-3;
+  EXPECT_GT(felt, 1.5 * overlap);  // the spring has less than half of it
+  // Inside the region, which the planes of the walls do not cut off from z = 0.2 to 1.8.
+  const model::Region middle{"", model::BoxRegion{{-1, -1, 0.2}, {1, 1, 1.8}}};
+  const Mat3 stress = measures::measure(model, std::vector{middle}).front().stress;
+  EXPECT_NEAR(stress(2, 2), -felt / 4, 1e-14);
 }
 
 // Rolling on a floor, R* = R: the moment μ_r R F_n brakes the ball by 5/7 μ_r g.

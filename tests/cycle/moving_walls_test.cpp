@@ -1,10 +1,11 @@
 // Walls that move: what they drag, carry and hit, against closed forms; restart and threads to the bit.
-#include "eigengrain/base/parallel.hpp"
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/io/scene_reader.hpp"
 #include "eigengrain/io/state_file.hpp"
 
+#include "support/bits.hpp"
 #include "support/motion.hpp"
+#include "support/restart.hpp"
 #include "unit/io_support.hpp"
 
 #include <gtest/gtest.h>
@@ -34,14 +35,7 @@ TEST(MovingWall, DragsABallUntilItRolls) {
   cycle.run(100);
   while (std::abs(cycle.state().force[0].x()) > (1 - 1e-9) * mu * g) cycle.step();
   EXPECT_NEAR(cycle.state().time, 2 * V / (7 * mu * g), 4 * dt);
-  double u = 0;
-  double surface = 0;
-  constexpr int steps = 4000;
-  for (int k = 0; k < steps; ++k) {
-    cycle.step();
-    u += velocity_of(cycle.state(), 0).x() / steps;
-    surface += (velocity_of(cycle.state(), 0).x() - spin_of(cycle.state(), 0).y()) / steps;
-  }
+  const auto [u, surface] = mean_motion(cycle, 4000);
   // The shear spring goes on swinging: less than 1e-2 of 2e-7 in the means.
   EXPECT_NEAR(u, 2 * V / 7, 1e-5 * V);
   EXPECT_NEAR(surface, V, 1e-5 * V);
@@ -140,32 +134,6 @@ SceneBuilder stirred_balls() {
   return builder.plane({0, 0, 0}, {1, 0, 0}).carried({1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 0});
 }
 
-std::string bits_of(const State& state) {
-  std::string bits;
-  const auto add = [&](const auto& column) {
-    bits.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(column[0]));
-  };
-  add(state.model.bodies.position);
-  add(state.model.bodies.velocity);
-  add(state.model.bodies.spin);
-  add(state.force);
-  add(state.moment);
-  add(shears_of(state));
-  for (const model::Plane& wall : state.model.walls)
-    add(std::vector<Vec3>{wall.point, wall.normal, wall.centre});
-  add(std::vector<double>{state.time, state.list.wall_way});
-  add(state.list.wall_lever);
-  return bits;
-}
-
-struct Threads {
-  explicit Threads(int wanted) { set_threads(wanted); }
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-  ~Threads() { set_threads(before); }
-  int before = threads();
-};
-
 TEST(MovingWall, IsTheSameOnAnyNumberOfThreads) {
   const auto run = [](int count) {
     const Threads threads(count);
@@ -216,19 +184,7 @@ TEST(MovingWall, ContinuesFromAStateFileToTheBit) {
   const io::TemporaryFolder folder;
   folder.write("push.csv", "0 0 0 0\n0.005 0.5 0 0 0 0 1\n0.02 -0.2 0 0 0 0 0\n");
   const model::Scene scene = io::read_scene_text(turning_scene, folder.path());
-  Cycle whole(cycle::start(scene), cycle::policy_of(scene));
-  whole.run(2000);
-  for (const std::int64_t stop : {1, 777}) {
-    Cycle first(cycle::start(scene), cycle::policy_of(scene));
-    first.run(stop);
-    const auto file = folder.path() / "results.h5";
-    io::write_state(first.state(), file);
-    State read = io::read_state(file);
-    EXPECT_EQ(bits_of(read), bits_of(first.state()));
-    Cycle second(std::move(read), cycle::policy_of(scene));
-    second.run(2000 - stop);
-    EXPECT_EQ(bits_of(second.state()), bits_of(whole.state())) << stop;
-  }
+  expect_to_continue(scene, 2000, {1, 777});
 }
 
 TEST(MovingWall, OfAStateMayBeStoppedAndOthersMayBegin) {

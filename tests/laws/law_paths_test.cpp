@@ -218,7 +218,7 @@ ContactForce step(const Law& law, typename Law::State& state, double overlap, co
 
 // What remains in a plane tilted by θ is cos θ of what lies along the tilt; a spin about n turns nothing.
 TEST(Projected, ShearIsShortenedByTheCosineOfTheTiltAndKnowsNoSpin) {
-  const Linear law({.kn = 2, .ks = 1, .friction = 5, .projected = true});
+  const Linear law({.kn = 2, .ks = 1, .friction = 5, .shear = {.projected = true}});
   Linear::State state = law.formed(Vec3::UnitZ());
   step(law, state, 0.1, {-0.05, -0.02, 0});
   const double theta = 0.1;

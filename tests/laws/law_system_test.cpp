@@ -1,9 +1,9 @@
 // Every law inside a model of balls and a wall: the consistent tangent and K are derivatives of the forces of
 // the assembly, also of moments between the sides.
 #include "eigengrain/assembly/linear_system.hpp"
-#include "eigengrain/assembly/tangent.hpp"
 
 #include "support/laws.hpp"
+#include "support/tangents.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,45 +17,6 @@ namespace {
 using assembly::Displacement;
 using assembly::Model;
 using assembly::Trial;
-
-/// A sink that adds to one dense matrix on (u, θ) of all bodies.
-struct DenseTangent {
-  explicit DenseTangent(const Model& model)
-      : k(Eigen::MatrixXd::Zero(6 * model.bodies.size(), 6 * model.bodies.size())) {}
-  void add(std::int32_t a, std::int32_t b, const Mat12& block) {
-    k.block<6, 6>(6 * a, 6 * a) += block.topLeftCorner<6, 6>();
-    if (b == contact::no_body) return;
-    k.block<6, 6>(6 * a, 6 * b) += block.topRightCorner<6, 6>();
-    k.block<6, 6>(6 * b, 6 * a) += block.bottomLeftCorner<6, 6>();
-    k.block<6, 6>(6 * b, 6 * b) += block.bottomRightCorner<6, 6>();
-  }
-  Eigen::MatrixXd k;
-};
-
-Displacement zero(const Model& model) {
-  const auto bodies = static_cast<std::size_t>(model.bodies.size());
-  return {std::vector<Vec3>(bodies, Vec3::Zero()), std::vector<Vec3>(bodies, Vec3::Zero())};
-}
-
-/// Central differences of the forces after a displacement, for bodies that stand at `model` before it.
-Eigen::MatrixXd numerical_tangent(const Model& model, const Displacement& at, double h) {
-  const int size = 6 * model.bodies.size();
-  Eigen::MatrixXd k(size, size);
-  const auto forces = [&](int column, double step) {
-    Displacement d = at;
-    (column % 6 < 3 ? d.translation : d.rotation)[static_cast<std::size_t>(column / 6)][column % 3] += step;
-    const assembly::BodyForces f = assembly::contact_forces(model, d);
-    Eigen::VectorXd v(size);
-    for (std::size_t i = 0; i < f.force.size(); ++i) {
-      v.segment<3>(static_cast<Eigen::Index>(6 * i)) = f.force[i];
-      v.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) = f.moment[i];
-    }
-    return v;
-  };
-  for (int column = 0; column < size; ++column)
-    k.col(column) = -(forces(column, h) - forces(column, -h)) / (2 * h);
-  return k;
-}
 
 Eigen::MatrixXd tangent_at(const Model& model, const Displacement& at) {
   std::vector<Vec3> position = model.bodies.position;
@@ -86,7 +47,7 @@ void commit(Model& model, const Displacement& d) {
 
 /// A motion that presses all together by a little or pulls them apart, shears and rolls.
 Displacement motion_of(const Model& model, std::mt19937_64& random, double along, double across) {
-  Displacement d = zero(model);
+  Displacement d = no_displacement(model);
   for (std::size_t i = 0; i < d.translation.size(); ++i) {
     d.translation[i] = Vec3(0, 0, -along * model.bodies.position[i].z()) + across * random_vector(random);
     d.rotation[i] = across * random_vector(random);
@@ -120,12 +81,13 @@ TEST(LawsInAModel, TheConsistentTangentIsTheDerivativeOfTheForces) {
   for (const Case& each : sticking()) {
     std::mt19937_64 random(1);
     Model model = heap(each.builder, 0.02).build();
-    commit(model, zero(model));
+    commit(model, no_displacement(model));
     commit(model, motion_of(model, random, each.along, 1e-4));
-    const Eigen::MatrixXd expected = numerical_tangent(model, zero(model), 1e-6);
+    const Eigen::MatrixXd expected = numerical_tangent(model, no_displacement(model), 1e-6);
     EXPECT_GT(expected.norm(), 1) << each.what;
     // Forces of order 0.1 over 2e-6 round to 1e-10; h² times third derivatives: 1e-12 k/U² = 1e-8.
-    EXPECT_LT((tangent_at(model, zero(model)) - expected).cwiseAbs().maxCoeff(), 2e-8 * expected.norm())
+    EXPECT_LT((tangent_at(model, no_displacement(model)) - expected).cwiseAbs().maxCoeff(),
+              2e-8 * expected.norm())
         << each.what;
   }
 }
@@ -147,7 +109,7 @@ TEST(LawsInAModel, TheConsistentTangentOfSlipIsTheDerivativeUpToTheIncrement) {
   for (const Case& each : slipping) {
     std::mt19937_64 random(1);
     Model model = heap(each.builder, 0.02).build();
-    commit(model, zero(model));
+    commit(model, no_displacement(model));
     const Displacement at = motion_of(model, random, 0, 1e-3);
     const Eigen::MatrixXd expected = numerical_tangent(model, at, 1e-7);
     const Eigen::MatrixXd found = tangent_at(model, at);
@@ -163,8 +125,9 @@ TEST(LawsInAModel, TheStiffnessIsTheDerivativeOfTheForcesUpToTheOverlap) {
     for (const double overlap : {1e-3, 1e-4}) {
       const Model model = [&] {
         Model built = heap(each.builder, overlap).build();
-        commit(built, zero(built));
-        Displacement d = zero(built);  // lift all a little: the hysteretic law is elastic on its way back
+        commit(built, no_displacement(built));
+        Displacement d =
+            no_displacement(built);  // lift all a little: the hysteretic law is elastic on its way back
         for (std::size_t i = 0; i < d.translation.size(); ++i)
           d.translation[i].z() = 0.01 * overlap * built.bodies.position[i].z();
         commit(built, d);
@@ -178,7 +141,7 @@ TEST(LawsInAModel, TheStiffnessIsTheDerivativeOfTheForcesUpToTheOverlap) {
         sink.add(e.a, e.b, block);
         k += sink.k;
       }
-      const Eigen::MatrixXd expected = numerical_tangent(model, zero(model), 1e-3 * overlap);
+      const Eigen::MatrixXd expected = numerical_tangent(model, no_displacement(model), 1e-3 * overlap);
       errors.push_back((k - expected).norm() / expected.norm());
     }
     EXPECT_LT(errors[0], 1e-2) << each.what;
@@ -193,7 +156,7 @@ TEST(LawsInAModel, ForcesAndMomentsOfAllBodiesAddToZero) {
     SceneBuilder builder = each.builder;
     builder.ball({0, 0, 0}).ball({1.7, 0, 0}, 0.75).ball({0.9, 1.2, 0.1}, 0.5);
     Model model = builder.build();
-    commit(model, zero(model));
+    commit(model, no_displacement(model));
     commit(model, motion_of(model, random, 0, 1e-3));
     const assembly::BodyForces f = assembly::contact_forces(model);
     Vec3 force = Vec3::Zero();

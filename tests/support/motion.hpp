@@ -41,6 +41,21 @@ inline const Vec3& spin_of(const assembly::State& state, std::int64_t identity) 
   return state.model.bodies.spin[row_of(state, identity)];
 }
 
+/// Means over some steps of ball 0 of a cycle.
+struct MeanMotion {
+  double speed = 0;    ///< along x
+  double surface = 0;  ///< along x, of its lowest point; for a radius of one
+};
+inline MeanMotion mean_motion(cycle::Cycle& cycle, int steps) {
+  MeanMotion mean;
+  for (int k = 0; k < steps; ++k) {
+    cycle.step();
+    mean.speed += velocity_of(cycle.state(), 0).x() / steps;
+    mean.surface += (velocity_of(cycle.state(), 0).x() - spin_of(cycle.state(), 0).y()) / steps;
+  }
+  return mean;
+}
+
 /// Positions in the order of the scene.
 inline std::vector<Vec3> positions_of(const assembly::State& state) {
   const model::Bodies& bodies = state.model.bodies;

@@ -146,6 +146,37 @@ TEST(StateFile, FrictionMayBeSwitchedOnAndOff) {
   }
 }
 
+/// Dashpots come and go without the shear forces that hold a packing.
+TEST(StateFile, DashpotsAndRollingMayBeSwitchedOnAndOff) {
+  using Plain = contact::ContactGroup<contact::BallBall, contact::Linear>;
+  using WithDashpots = contact::ContactGroup<contact::BallBall, contact::DampedLinear>;
+  using WithRolling = contact::ContactGroup<contact::BallBall, contact::RollingLinear>;
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "state.h5";
+  write_state(arbitrary_state(busy()), file);
+  const Plain written = group_of_rule<Plain>(read_state(file), 0);
+  ASSERT_FALSE(written.pairs.empty());
+  const auto expect_kept = [&](const auto& group) {
+    ASSERT_EQ(group.states.size(), written.states.size());
+    for (std::size_t c = 0; c < group.states.size(); ++c) {
+      EXPECT_EQ(group.states[c].shear, written.states[c].shear);
+      EXPECT_EQ(group.states[c].normal, written.states[c].normal);
+    }
+  };
+  const std::vector<std::string> dashpots{"contacts.0.beta_n=0.2"};
+  const assembly::State damped = read_state(file, dashpots);
+  expect_kept(group_of_rule<WithDashpots>(damped, 0));
+  for (const auto& state : group_of_rule<WithDashpots>(damped, 0).states)
+    EXPECT_EQ(state.viscous, Vec3::Zero());
+  const std::vector<std::string> rolling{"contacts.0.kr=1e-3", "contacts.0.rolling_friction=0.1"};
+  expect_kept(group_of_rule<WithRolling>(read_state(file, rolling), 0));
+
+  const auto second = folder.path() / "damped.h5";
+  write_state(damped, second);
+  const std::vector<std::string> off{"contacts.0.beta_n=0"};
+  expect_kept(group_of_rule<Plain>(read_state(second, off), 0));
+}
+
 /// Contacts with a wall that comes near are not in the list that was made before.
 TEST(StateFile, AWallThatMovesMeetsItsBalls) {
   const TemporaryFolder folder;

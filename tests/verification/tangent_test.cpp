@@ -1,8 +1,7 @@
 // The consistent tangent is the derivative of the contact forces, all of it: slip, the turning of the contact
 // frame and the moving contact point, at overlaps where they are not small.
-#include "eigengrain/assembly/tangent.hpp"
-
 #include "support/scenes.hpp"
+#include "support/tangents.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,49 +14,10 @@ using assembly::Displacement;
 using assembly::Model;
 using assembly::Trial;
 
-/// A sink that adds to one dense matrix on (u, θ) of all bodies.
-struct DenseTangent {
-  explicit DenseTangent(const Model& model)
-      : k(Eigen::MatrixXd::Zero(6 * model.bodies.size(), 6 * model.bodies.size())) {}
-  void add(std::int32_t a, std::int32_t b, const Mat12& block) {
-    k.block<6, 6>(6 * a, 6 * a) += block.topLeftCorner<6, 6>();
-    if (b == contact::no_body) return;
-    k.block<6, 6>(6 * a, 6 * b) += block.topRightCorner<6, 6>();
-    k.block<6, 6>(6 * b, 6 * a) += block.bottomLeftCorner<6, 6>();
-    k.block<6, 6>(6 * b, 6 * b) += block.bottomRightCorner<6, 6>();
-  }
-  Eigen::MatrixXd k;
-};
-
-Displacement zero(const Model& model) {
-  const auto bodies = static_cast<std::size_t>(model.bodies.size());
-  return {std::vector<Vec3>(bodies, Vec3::Zero()), std::vector<Vec3>(bodies, Vec3::Zero())};
-}
-
-Eigen::MatrixXd numerical_tangent(const Model& model) {
-  constexpr double h = 1e-6;
-  const int size = 6 * model.bodies.size();
-  Eigen::MatrixXd k(size, size);
-  const auto forces = [&](int column, double step) {
-    Displacement d = zero(model);
-    (column % 6 < 3 ? d.translation : d.rotation)[static_cast<std::size_t>(column / 6)][column % 3] = step;
-    const assembly::BodyForces f = assembly::contact_forces(model, d);
-    Eigen::VectorXd v(size);
-    for (std::size_t i = 0; i < f.force.size(); ++i) {
-      v.segment<3>(static_cast<Eigen::Index>(6 * i)) = f.force[i];
-      v.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) = f.moment[i];
-    }
-    return v;
-  };
-  for (int column = 0; column < size; ++column)
-    k.col(column) = -(forces(column, h) - forces(column, -h)) / (2 * h);
-  return k;
-}
-
 /// Moves the bodies by small random steps and commits each, so that contacts carry shear and some slip.
 void shake(Model& model, std::mt19937_64& random, double size) {
   for (int step = 0; step < 3; ++step) {
-    Displacement d = zero(model);
+    Displacement d = no_displacement(model);
     for (Vec3& u : d.translation) u = size * random_vector(random);
     for (Vec3& theta : d.rotation) theta = size * random_vector(random);
     for (std::size_t i = 0; i < d.translation.size(); ++i) model.bodies.position[i] += d.translation[i];
@@ -68,10 +28,10 @@ void shake(Model& model, std::mt19937_64& random, double size) {
 }
 
 void expect_exact(Model& model) {
-  const Displacement d = zero(model);
+  const Displacement d = no_displacement(model);
   DenseTangent tangent(model);
   assembly::assemble_tangent(model, Trial{model.bodies.position, d.translation, d.rotation, 1.0}, tangent);
-  const Eigen::MatrixXd expected = numerical_tangent(model);
+  const Eigen::MatrixXd expected = numerical_tangent(model, no_displacement(model), 1e-6);
   // Forces of order one over 2e-6: 1e-9 of rounding, h² of curvature; a term left out would be of order U =
   // 1e-2.
   EXPECT_LT((tangent.k - expected).cwiseAbs().maxCoeff(), 2e-8);
@@ -99,11 +59,11 @@ TEST(ConsistentTangent, IsTheDerivativeOfTheForcesWhereContactsSlip) {
     Model model = builder.build();
     shake(model, random, 2e-2);
     DenseTangent tangent(model);
-    const Displacement d = zero(model);
+    const Displacement d = no_displacement(model);
     assembly::assemble_tangent(model, Trial{model.bodies.position, d.translation, d.rotation, 1.0}, tangent);
     if ((tangent.k - tangent.k.transpose()).cwiseAbs().maxCoeff() > 0.05) ++slipping;
     // On the cone exactly, a small step sticks in one direction and slips in the other; move off it.
-    Displacement nudge = zero(model);
+    Displacement nudge = no_displacement(model);
     for (Vec3& u : nudge.translation) u = 5e-3 * random_vector(random);
     for (std::size_t i = 0; i < nudge.translation.size(); ++i)
       model.bodies.position[i] += nudge.translation[i];

@@ -105,6 +105,10 @@ class ContactForceSum {
   std::vector<Vec3> foreign_moment_;
 };
 
+/// Finds the forces of a state anew from where everything is, as of contacts that stand still: springs keep
+/// their history, dashpots forget the last step.
+void renew_forces(State& state);
+
 /// Contact forces after a trial displacement. Nothing is stored in the contacts.
 BodyForces contact_forces(const Model& model, const Displacement& displacement);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/acting.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/contact/consistent_tangent.hpp"
@@ -22,21 +23,16 @@ concept TangentSink = requires(S& sink, std::int32_t body, const Mat12& k) {
 template <TangentSink Sink>
 void assemble_tangent(const Model& model, const Trial& trial, Sink& sink) {
   const contact::Placement placement = model.placement(trial.position);
-  model.contacts.for_each_group([&](const auto& group) {
+  for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
-    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      const contact::Pair& pair = group.pairs[c];
-      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
-      if (!group.law.acts(contact::at_rest(geometry), group.states[c])) continue;
-      const contact::ContactMotion motion =
-          motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
-      typename Group::State discarded;
-      const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
-      sink.add(pair.a, Kinematics::second_is_body ? pair.b : contact::no_body,
-               contact::consistent_tangent(geometry, Kinematics::curvature(placement, pair, geometry), force,
-                                           group.law.tangent(motion, group.states[c])));
-    }
+    const contact::Pair& pair = group.pairs[c];
+    const contact::ContactMotion motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+    typename Group::State discarded;
+    const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
+    sink.add(pair.a, Kinematics::second_is_body ? pair.b : contact::no_body,
+             contact::consistent_tangent(geometry, Kinematics::curvature(placement, pair, geometry), force,
+                                         group.law.tangent(motion, group.states[c])));
   });
 }
 

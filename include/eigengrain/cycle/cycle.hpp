@@ -26,11 +26,10 @@ assembly::State start(const model::Scene& scene);
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
-///   walls               by the velocity that is given for the middle of the step
-///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
-///                       positions,
-///   the
-///                       increments v₊ Δt and the old history, which is committed at once
+///   walls               by the velocity that is given for the middle of the step, servo walls by their load
+///   at t contacts            the list, where a body or wall has moved by half the skin; forces from the new
+///   positions,
+///                       the increments v₊ Δt and the old history, which is committed at once
 ///
 /// A state that starts has Δt_old = 0: its velocity v₀ at t = 0 becomes v₀ + ½Δt a₀ at the half step, which
 /// keeps the scheme at second order. The same program gives the same bits on any number of threads, and from

@@ -54,7 +54,7 @@ struct Dashpots {
 /// middle of the step, half a step behind the forces, so that what dashpots dissipate is of first order in
 /// the step.
 template <class Base>
-class Damped {
+class Damped : public Base {
  public:
   struct State : Base::State {
     Vec3 viscous = Vec3::Zero();  ///< D_n + D_s of the step that led here, N, on the second side
@@ -64,46 +64,29 @@ class Damped {
              std::array<StateField, 1>{{{.name = "viscous_force", .unit = "N", .components = 3}}});
   static constexpr bool asks_rate = true;
 
-  Damped(const Base& base, const Dashpots& dashpots) : base_(base), dashpots_(dashpots) {}
+  Damped(const Base& base, const Dashpots& dashpots) : Base(base), dashpots_(dashpots) {}
 
-  bool tension() const { return base_.tension(); }
-  bool needs_rotation() const { return base_.needs_rotation(); }
   /// Velocities are taken from the increments: in a rigid motion those of the middle of the step vanish.
-  bool mid_step() const { return !base_.end_step(); }
-  State formed(const Vec3& n) const {
-    State state;
-    static_cast<typename Base::State&>(state) = base_.formed(n);
-    return state;
-  }
-  bool acts(const ContactMotion& motion, const State& old) const { return base_.acts(motion, old); }
+  bool mid_step() const { return !Base::end_step(); }
+  State formed(const Vec3& n) const { return {Base::formed(n)}; }
 
   Response respond(const ContactMotion& motion, const State& old, State& next) const {
-    Response response = base_.respond(motion, old, next);
+    Response response = Base::respond(motion, old, next);
     next.viscous = Vec3::Zero();
-    if (!acts(motion, old)) return response;
-    next.viscous = viscous_force(motion, base_.stiffness(motion, old), response);
+    if (!Base::acts(motion, old)) return response;
+    next.viscous = viscous_force(motion, Base::stiffness(motion, old), response);
     response.force.force += next.viscous;
     return response;
   }
   ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
     return respond(motion, old, next).force;
   }
-  ContactStiffness stiffness(const ContactMotion& motion, const State& old) const {
-    return base_.stiffness(motion, old);
-  }
-  ContactTangent tangent(const ContactMotion& motion, const State& old) const {
-    return base_.tangent(motion, old);
-  }
-  double energy(const ContactMotion& motion, const State& old) const { return base_.energy(motion, old); }
   DampingRatios damping() const { return {.normal = dashpots_.beta_n, .shear = dashpots_.beta_s}; }
 
-  static constexpr std::string_view name = Base::name;
-  static constexpr std::string_view description = Base::description;
-  static constexpr auto& parameters = Base::parameters;
   static constexpr std::size_t own_parameters = Base::own_parameters + Dashpots::parameters.size();
 
   static bool serves(std::span<const double> values) {
-    return are_defaults(values, parameters, own_parameters);
+    return are_defaults(values, Base::parameters, own_parameters);
   }
   static Damped from_values(std::span<const double> values) {
     const std::span<const double> own = values.subspan(Base::own_parameters, Dashpots::parameters.size());
@@ -128,14 +111,13 @@ class Damped {
     const Vec3& n = motion.normal;
     const double approach = motion.velocity.dot(n);
     double normal = -2 * dashpots_.beta_n * std::sqrt(motion.reduced_mass * k.normal) * approach;
-    if (dashpots_.no_tension && !base_.tension() && springs.normal_force + normal < 0)
+    if (dashpots_.no_tension && !Base::tension() && springs.normal_force + normal < 0)
       normal = -springs.normal_force;
     const double shear =
         springs.slides ? 0.0 : -2 * dashpots_.beta_s * std::sqrt(motion.reduced_mass * k.shear);
     return normal * n + shear * (motion.velocity - approach * n);
   }
 
-  Base base_;
   Dashpots dashpots_;
 };
 

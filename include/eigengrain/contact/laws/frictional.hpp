@@ -10,6 +10,45 @@
 
 namespace eigengrain::contact {
 
+/// Coefficient of friction as scene files describe it.
+inline constexpr ParameterDescription friction_parameter{
+    .name = "friction", .unit = "", .default_value = 0, .minimum = 0, .description = "coefficient μ"};
+
+/// How the shear force follows its contact, as scene files describe it; turned with it in the middle of the
+/// step where nothing is said.
+struct ShearOptions {
+  bool small_angle = false;
+  bool end_step = false;
+  bool projected = false;
+
+  static constexpr std::array<ParameterDescription, 3> parameters{{
+      {.name = "small_angle",
+       .kind = ParameterDescription::Kind::flag,
+       .unit = "",
+       .default_value = 0,
+       .description =
+           "carry the shear force by the small-angle forms of eqs. 1.11-1.12, not by exact rotations"},
+      {.name = "end_step",
+       .kind = ParameterDescription::Kind::flag,
+       .unit = "",
+       .default_value = 0,
+       .description =
+           "measure shear increments with the geometry at the end of the step, as PFC3D does, not of its "
+           "middle"},
+      {.name = "projected",
+       .kind = ParameterDescription::Kind::flag,
+       .unit = "",
+       .default_value = 0,
+       .description =
+           "project the shear force onto the new contact plane, as LAMMPS's gran/hooke/history does, in "
+           "place of turning it"},
+  }};
+  /// values: of these parameters, and perhaps of more behind them.
+  static ShearOptions from_values(std::span<const double> values) {
+    return {.small_angle = values[0] != 0, .end_step = values[1] != 0, .projected = values[2] != 0};
+  }
+};
+
 /// Springs across n at the present overlap, and what becomes of the old shear force:
 /// F_s <- kept · carried(F_s) - k_s δ_s.
 struct ShearSprings {
@@ -36,7 +75,7 @@ struct Response {
 /// F_s starts at zero when the contact forms. k_s counts only where friction is positive.
 ///
 /// Springs say what F_n, k_s and the energy are (laws/linear.hpp, hertz.hpp, hysteretic.hpp): Params with
-/// `friction`, `small_angle`, `end_step` and `projected`; Memory, what they remember beside the shear force;
+/// `friction` and `shear` (ShearOptions); Memory, what they remember beside the shear force;
 /// and the functions used here, of the motion and the old memory.
 template <class Springs>
 class Frictional {
@@ -58,10 +97,10 @@ class Frictional {
   explicit Frictional(const Params& params)
       : springs_(params),
         friction_(params.friction),
-        transport_(params.projected     ? Transport::projected
-                   : params.small_angle ? Transport::small_angle
-                                        : Transport::rotated),
-        end_step_(params.end_step) {}
+        transport_(params.shear.projected     ? Transport::projected
+                   : params.shear.small_angle ? Transport::small_angle
+                                              : Transport::rotated),
+        end_step_(params.shear.end_step) {}
 
   bool tension() const { return springs_.tension(); }
   bool needs_rotation() const { return springs_.has_shear(); }
@@ -151,7 +190,7 @@ class Frictional {
   /// What is wrong with values that are each in range; empty: nothing.
   static std::string mistake(std::span<const double> values) {
     const Params params = Springs::params(values);
-    if (params.small_angle && params.projected)
+    if (params.shear.small_angle && params.shear.projected)
       return "small_angle and projected are two ways to carry the shear force; keep one of the two";
     return {};
   }
@@ -195,33 +234,5 @@ class Frictional {
   Transport transport_;
   bool end_step_;
 };
-
-/// Parameters that laws with friction share.
-inline constexpr ParameterDescription friction_parameter{
-    .name = "friction", .unit = "", .default_value = 0, .minimum = 0, .description = "coefficient μ"};
-inline constexpr ParameterDescription small_angle_parameter{
-    .name = "small_angle",
-    .kind = ParameterDescription::Kind::flag,
-    .unit = "",
-    .default_value = 0,
-    .description =
-        "carry the shear force by the small-angle forms of eqs. 1.11-1.12, not by exact rotations"};
-inline constexpr ParameterDescription end_step_parameter{
-    .name = "end_step",
-    .kind = ParameterDescription::Kind::flag,
-    .unit = "",
-    .default_value = 0,
-    .description =
-        "measure shear increments with the geometry at the end of the step, as PFC3D does, not "
-        "of its middle"};
-
-inline constexpr ParameterDescription projected_parameter{
-    .name = "projected",
-    .kind = ParameterDescription::Kind::flag,
-    .unit = "",
-    .default_value = 0,
-    .description =
-        "project the shear force onto the new contact plane, as LAMMPS's gran/hooke/history does, "
-        "in place of turning it"};
 
 }  // namespace eigengrain::contact

@@ -41,9 +41,7 @@ class HertzSprings {
     double effective_young = 0;  ///< E*, Pa
     double effective_shear = 0;  ///< G*, Pa
     double friction = 0;         ///< μ
-    bool small_angle = false;
-    bool end_step = false;
-    bool projected = false;
+    ShearOptions shear{};
   };
   struct Memory {
     double overlap = 0;  ///< U at the committed state, m
@@ -90,34 +88,34 @@ class HertzSprings {
       "Hertz's normal force with Mindlin's shear stiffness and Coulomb slip; dashpots and rolling resistance "
       "on "
       "demand";
-  static constexpr std::array<ParameterDescription, 6> own_parameters{{
-      {.name = "effective_young",
-       .unit = "Pa",
-       .minimum = 0,
-       .minimum_allowed = false,
-       .description = "E* of the pair, 1/E* = sum of (1 - nu^2)/E",
-       .of_material =
-           [](const model::Material& m) {
-             return detail::elastic_side(m, [](double young, double nu) { return young / (1 - nu * nu); });
-           },
-       .material_keys = "young and poisson"},
-      {.name = "effective_shear",
-       .unit = "Pa",
-       .minimum = 0,
-       .description =
-           "G* of the pair, 1/G* = sum of (2 - nu)/G, G = E/2(1 + nu); counts only where friction is "
-           "positive",
-       .of_material =
-           [](const model::Material& m) {
-             return detail::elastic_side(
-                 m, [](double young, double nu) { return young / (2 * (1 + nu) * (2 - nu)); });
-           },
-       .material_keys = "young and poisson"},
-      friction_parameter,
-      small_angle_parameter,
-      end_step_parameter,
-      projected_parameter,
-  }};
+  static constexpr auto own_parameters = joined(
+      std::array<ParameterDescription, 3>{{
+          {.name = "effective_young",
+           .unit = "Pa",
+           .minimum = 0,
+           .minimum_allowed = false,
+           .description = "E* of the pair, 1/E* = sum of (1 - nu^2)/E",
+           .of_material =
+               [](const model::Material& m) {
+                 return detail::elastic_side(m,
+                                             [](double young, double nu) { return young / (1 - nu * nu); });
+               },
+           .material_keys = "young and poisson"},
+          {.name = "effective_shear",
+           .unit = "Pa",
+           .minimum = 0,
+           .description =
+               "G* of the pair, 1/G* = sum of (2 - nu)/G, G = E/2(1 + nu); counts only where friction is "
+               "positive",
+           .of_material =
+               [](const model::Material& m) {
+                 return detail::elastic_side(
+                     m, [](double young, double nu) { return young / (2 * (1 + nu) * (2 - nu)); });
+               },
+           .material_keys = "young and poisson"},
+          friction_parameter,
+      }},
+      ShearOptions::parameters);
   static constexpr auto parameters =
       joined(joined(own_parameters, Dashpots::parameters), RollingSpring::parameters);
 
@@ -125,9 +123,7 @@ class HertzSprings {
     return {.effective_young = values[0],
             .effective_shear = values[1],
             .friction = values[2],
-            .small_angle = values[3] != 0,
-            .end_step = values[4] != 0,
-            .projected = values[5] != 0};
+            .shear = ShearOptions::from_values(values.subspan(3))};
   }
 
  private:

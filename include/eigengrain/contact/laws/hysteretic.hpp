@@ -25,9 +25,7 @@ class HystereticSprings {
     double restitution = 1;  ///< e
     double ks = 0;           ///< N/m
     double friction = 0;     ///< μ
-    bool small_angle = false;
-    bool end_step = false;
-    bool projected = false;
+    ShearOptions shear{};
   };
   struct Memory {
     double largest = 0;  ///< U_m at the committed state, m
@@ -67,30 +65,29 @@ class HystereticSprings {
       "a linear spring that unloads along a steeper line, for impacts of a given restitution; linear shear "
       "spring "
       "with Coulomb slip";
-  static constexpr std::array<ParameterDescription, 7> own_parameters{{
-      {.name = "kn",
-       .unit = "N/m",
-       .minimum = 0,
-       .minimum_allowed = false,
-       .description = "normal stiffness of the pair while it is loaded"},
-      {.name = "restitution",
-       .unit = "",
-       .minimum = 0,
-       .minimum_allowed = false,
-       .maximum = 1,
-       .description =
-           "the part of the normal velocity that a head-on impact leaves; unloading has the stiffness "
-           "kn/restitution^2"},
-      {.name = "ks",
-       .unit = "N/m",
-       .default_value = 0,
-       .minimum = 0,
-       .description = "shear stiffness of the pair; counts only where friction is positive"},
-      friction_parameter,
-      small_angle_parameter,
-      end_step_parameter,
-      projected_parameter,
-  }};
+  static constexpr auto own_parameters = joined(
+      std::array<ParameterDescription, 4>{{
+          {.name = "kn",
+           .unit = "N/m",
+           .minimum = 0,
+           .minimum_allowed = false,
+           .description = "normal stiffness of the pair while it is loaded"},
+          {.name = "restitution",
+           .unit = "",
+           .minimum = 0,
+           .minimum_allowed = false,
+           .maximum = 1,
+           .description =
+               "the part of the normal velocity that a head-on impact leaves; unloading has the stiffness "
+               "kn/restitution^2"},
+          {.name = "ks",
+           .unit = "N/m",
+           .default_value = 0,
+           .minimum = 0,
+           .description = "shear stiffness of the pair; counts only where friction is positive"},
+          friction_parameter,
+      }},
+      ShearOptions::parameters);
   static constexpr auto& parameters = own_parameters;
 
   static Params params(std::span<const double> values) {
@@ -98,9 +95,7 @@ class HystereticSprings {
             .restitution = values[1],
             .ks = values[2],
             .friction = values[3],
-            .small_angle = values[4] != 0,
-            .end_step = values[5] != 0,
-            .projected = values[6] != 0};
+            .shear = ShearOptions::from_values(values.subspan(4))};
   }
 
  private:

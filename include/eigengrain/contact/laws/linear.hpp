@@ -33,9 +33,7 @@ class LinearSprings {
     double ks = 0;        ///< N/m
     double friction = 0;  ///< μ
     bool tension = false;
-    bool small_angle = false;
-    bool end_step = false;
-    bool projected = false;
+    ShearOptions shear{};
   };
   struct Memory {
     static constexpr std::array<StateField, 0> fields{};
@@ -71,32 +69,31 @@ class LinearSprings {
   static constexpr std::string_view description =
       "linear normal and shear springs of the pair, with Coulomb slip; dashpots and rolling resistance on "
       "demand";
-  static constexpr std::array<ParameterDescription, 7> own_parameters{{
-      {.name = "kn",
-       .unit = "N/m",
-       .minimum = 0,
-       .minimum_allowed = false,
-       .description = "normal stiffness of the pair",
-       .of_material = [](const model::Material& m) { return detail::linear_side(m, m.kn); },
-       .material_keys = "kn"},
-      {.name = "ks",
-       .unit = "N/m",
-       .default_value = 0,
-       .minimum = 0,
-       .description =
-           "shear stiffness of the pair; counts only where friction is positive or `tension` is on",
-       .of_material = [](const model::Material& m) { return detail::linear_side(m, m.ks); },
-       .material_keys = "ks"},
-      friction_parameter,
-      {.name = "tension",
-       .kind = ParameterDescription::Kind::flag,
-       .unit = "",
-       .default_value = 0,
-       .description = "springs that also pull, never open and never slip; for tests of linear systems"},
-      small_angle_parameter,
-      end_step_parameter,
-      projected_parameter,
-  }};
+  static constexpr auto own_parameters = joined(
+      std::array<ParameterDescription, 4>{{
+          {.name = "kn",
+           .unit = "N/m",
+           .minimum = 0,
+           .minimum_allowed = false,
+           .description = "normal stiffness of the pair",
+           .of_material = [](const model::Material& m) { return detail::linear_side(m, m.kn); },
+           .material_keys = "kn"},
+          {.name = "ks",
+           .unit = "N/m",
+           .default_value = 0,
+           .minimum = 0,
+           .description =
+               "shear stiffness of the pair; counts only where friction is positive or `tension` is on",
+           .of_material = [](const model::Material& m) { return detail::linear_side(m, m.ks); },
+           .material_keys = "ks"},
+          friction_parameter,
+          {.name = "tension",
+           .kind = ParameterDescription::Kind::flag,
+           .unit = "",
+           .default_value = 0,
+           .description = "springs that also pull, never open and never slip; for tests of linear systems"},
+      }},
+      ShearOptions::parameters);
   static constexpr auto parameters =
       joined(joined(own_parameters, Dashpots::parameters), RollingSpring::parameters);
 
@@ -105,9 +102,7 @@ class LinearSprings {
             .ks = values[1],
             .friction = values[2],
             .tension = values[3] != 0,
-            .small_angle = values[4] != 0,
-            .end_step = values[5] != 0,
-            .projected = values[6] != 0};
+            .shear = ShearOptions::from_values(values.subspan(4))};
   }
 
  private:

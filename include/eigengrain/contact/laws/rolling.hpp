@@ -39,7 +39,7 @@ struct RollingSpring {
 /// carried with the contact frame like the shear force, and zero when the contact forms. k_r adds to both
 /// rotational stiffnesses of the contact (κ_n, κ_s of eq. 1.34).
 template <class Base>
-class Rolling {
+class Rolling : public Base {
  public:
   struct State : Base::State {
     Vec3 moment = Vec3::Zero();  ///< M, N m, of the first side on the second
@@ -47,28 +47,20 @@ class Rolling {
   static constexpr auto state_fields =
       joined(Base::state_fields,
              std::array<StateField, 1>{{{.name = "rolling_moment", .unit = "N m", .components = 3}}});
-  static constexpr bool asks_rate = contact::asks_rate<Base>;
 
-  Rolling(const Base& base, const RollingSpring& spring) : base_(base), spring_(spring) {
-    if (spring_.friction <= 0 && !base_.tension()) spring_.kr = 0;
+  Rolling(const Base& base, const RollingSpring& spring) : Base(base), spring_(spring) {
+    if (spring_.friction <= 0 && !Base::tension()) spring_.kr = 0;
   }
 
-  bool tension() const { return base_.tension(); }
-  bool needs_rotation() const { return spring_.kr > 0 || base_.needs_rotation(); }
-  bool mid_step() const { return base_.mid_step(); }
-  State formed(const Vec3& n) const {
-    State state;
-    static_cast<typename Base::State&>(state) = base_.formed(n);
-    return state;
-  }
-  bool acts(const ContactMotion& motion, const State& old) const { return base_.acts(motion, old); }
+  bool needs_rotation() const { return spring_.kr > 0 || Base::needs_rotation(); }
+  State formed(const Vec3& n) const { return {Base::formed(n)}; }
 
   Response respond(const ContactMotion& motion, const State& old, State& next) const {
-    Response response = base_.respond(motion, old, next);
+    Response response = Base::respond(motion, old, next);
     next.moment = trial_moment(motion, old);
     const double limit = limit_of(motion, response);
     if (slips(next.moment, limit)) next.moment *= limit / next.moment.norm();
-    if (!acts(motion, old)) next.moment = Vec3::Zero();
+    if (!Base::acts(motion, old)) next.moment = Vec3::Zero();
     response.force.moment += next.moment;
     return response;
   }
@@ -76,7 +68,7 @@ class Rolling {
     return respond(motion, old, next).force;
   }
   ContactStiffness stiffness(const ContactMotion& motion, const State& old) const {
-    ContactStiffness k = base_.stiffness(motion, old);
+    ContactStiffness k = Base::stiffness(motion, old);
     k.twist += spring_.kr;
     k.bending += spring_.kr;
     return k;
@@ -84,9 +76,9 @@ class Rolling {
   /// Sticking: k_r. Slipping, with m = M/|M| of the trial moment: (μ_r R* F_n/|M|) k_r (1 - mmᵀ), and -dM/dδ
   /// = μ_r R* k_n m nᵀ, as the limit follows the normal force.
   ContactTangent tangent(const ContactMotion& motion, const State& old) const {
-    ContactTangent result = base_.tangent(motion, old);
+    ContactTangent result = Base::tangent(motion, old);
     State discarded;
-    const double limit = limit_of(motion, base_.respond(motion, old, discarded));
+    const double limit = limit_of(motion, Base::respond(motion, old, discarded));
     const Vec3 trial = trial_moment(motion, old);
     if (!slips(trial, limit)) {
       result.rotation += spring_.kr * Mat3::Identity();
@@ -101,27 +93,22 @@ class Rolling {
     return result;
   }
   double energy(const ContactMotion& motion, const State& old) const {
-    const double base = base_.energy(motion, old);
+    const double base = Base::energy(motion, old);
     if (spring_.kr <= 0) return base;
     State next;
     respond(motion, old, next);
     return base + 0.5 * next.moment.squaredNorm() / spring_.kr;
   }
-  DampingRatios damping() const requires contact::asks_rate<Base> { return base_.damping(); }
 
-  static constexpr std::string_view name = Base::name;
-  static constexpr std::string_view description = Base::description;
-  static constexpr auto& parameters = Base::parameters;
   static constexpr std::size_t own_parameters = Base::own_parameters + RollingSpring::parameters.size();
 
   static bool serves(std::span<const double> values) {
-    return are_defaults(values, parameters, own_parameters);
+    return are_defaults(values, Base::parameters, own_parameters);
   }
   static Rolling from_values(std::span<const double> values) {
     return {Base::from_values(values),
             {.kr = values[Base::own_parameters], .friction = values[Base::own_parameters + 1]}};
   }
-  static std::string mistake(std::span<const double> values) { return Base::mistake(values); }
 
  private:
   /// M before the slip check. Zero in the step in which the contact forms.
@@ -133,10 +120,9 @@ class Rolling {
     return spring_.friction * motion.reduced_radius * base.normal_force;
   }
   bool slips(const Vec3& moment, double limit) const {
-    return !base_.tension() && moment.squaredNorm() > limit * limit;
+    return !Base::tension() && moment.squaredNorm() > limit * limit;
   }
 
-  Base base_;
   RollingSpring spring_;
 };
 

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "eigengrain/io/schema.hpp"
+
+#include <vector>
+
+/// The table of keys (docs/scene-schema.md) by what they are about. The description says what the reader does
+/// with the value.
+namespace eigengrain::io {
+
+inline constexpr Range positive_range{.low = 0, .low_allowed = false};
+
+/// Gravity, materials and the laws between them, but the parameters of the laws.
+std::vector<KeyDescription> contact_keys();
+
+/// Balls, from files, one by one or made.
+std::vector<KeyDescription> ball_keys();
+
+/// Walls and the periodic cell.
+std::vector<KeyDescription> wall_keys();
+
+/// How the scene moves, and what is written of it.
+std::vector<KeyDescription> run_keys();
+
+}  // namespace eigengrain::io

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "eigengrain/base/parallel.hpp"
+
+#include "support/motion.hpp"
+
+#include <string>
+
+/// Whether two states are the same to the bit.
+namespace eigengrain::test {
+
+/// Puts the number of threads back when it goes.
+struct Threads {
+  explicit Threads(int wanted) { set_threads(wanted); }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+  ~Threads() { set_threads(before); }
+  int before = threads();
+};
+
+/// All that moves in a state: balls, forces, shear, walls, surfaces, and what the near list was made for.
+inline std::string bits_of(const assembly::State& state) {
+  std::string bits;
+  const auto add = [&](const auto& column) {
+    bits.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(column[0]));
+  };
+  add(state.model.bodies.position);
+  add(state.model.bodies.velocity);
+  add(state.model.bodies.spin);
+  add(state.force);
+  add(state.moment);
+  add(shears_of(state));
+  std::vector<std::int8_t> sides;
+  for_each_shear(state.model, [&](const contact::Pair& pair, const auto&) { sides.push_back(pair.side); });
+  add(sides);
+  for (const model::Plane& wall : state.model.walls)
+    add(std::vector<Vec3>{wall.point, wall.normal, wall.centre});
+  for (const contact::SurfacePlace& place : state.model.surface_places) {
+    add(std::vector<Vec3>{place.pose.centre});
+    add(place.pose.orientation.coeffs());
+  }
+  add(std::vector<double>{state.time, state.list.wall_way});
+  add(state.list.wall_lever);
+  return bits;
+}
+
+}  // namespace eigengrain::test

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "eigengrain/assembly/tangent.hpp"
+
+#include "support/scenes.hpp"
+
+#include <vector>
+
+/// The consistent tangent of a model as a dense matrix, and by central differences of its forces.
+namespace eigengrain::test {
+
+inline assembly::Displacement no_displacement(const assembly::Model& model) {
+  const auto bodies = static_cast<std::size_t>(model.bodies.size());
+  return {std::vector<Vec3>(bodies, Vec3::Zero()), std::vector<Vec3>(bodies, Vec3::Zero())};
+}
+
+/// A sink that adds to one dense matrix on (u, θ) of all bodies.
+struct DenseTangent {
+  explicit DenseTangent(const assembly::Model& model)
+      : k(Eigen::MatrixXd::Zero(6 * model.bodies.size(), 6 * model.bodies.size())) {}
+  void add(std::int32_t a, std::int32_t b, const Mat12& block) {
+    k.block<6, 6>(6 * a, 6 * a) += block.topLeftCorner<6, 6>();
+    if (b == contact::no_body) return;
+    k.block<6, 6>(6 * a, 6 * b) += block.topRightCorner<6, 6>();
+    k.block<6, 6>(6 * b, 6 * a) += block.bottomLeftCorner<6, 6>();
+    k.block<6, 6>(6 * b, 6 * b) += block.bottomRightCorner<6, 6>();
+  }
+  Eigen::MatrixXd k;
+};
+
+/// Minus the derivative of (force, moment) of all bodies after a displacement from where they stand, by steps
+/// of h.
+inline Eigen::MatrixXd numerical_tangent(const assembly::Model& model, const assembly::Displacement& at,
+                                         double h) {
+  const int size = 6 * model.bodies.size();
+  Eigen::MatrixXd k(size, size);
+  const auto forces = [&](int column, double step) {
+    assembly::Displacement d = at;
+    (column % 6 < 3 ? d.translation : d.rotation)[static_cast<std::size_t>(column / 6)][column % 3] += step;
+    const assembly::BodyForces f = assembly::contact_forces(model, d);
+    Eigen::VectorXd v(size);
+    for (std::size_t i = 0; i < f.force.size(); ++i) {
+      v.segment<3>(static_cast<Eigen::Index>(6 * i)) = f.force[i];
+      v.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) = f.moment[i];
+    }
+    return v;
+  };
+  for (int column = 0; column < size; ++column)
+    k.col(column) = -(forces(column, h) - forces(column, -h)) / (2 * h);
+  return k;
+}
+
+}  // namespace eigengrain::test
