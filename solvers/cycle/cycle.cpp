@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/orientation.hpp"
 
 #include <fmt/format.h>
 
@@ -62,7 +63,7 @@ State start(const model::Scene& scene) {
 
   assembly::BodyForces forces;
   assembly::ContactForceSum(state.model, state.turns())
-      .advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0}, forces);
+      .advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation}, forces);
   state.force = std::move(forces.force);
   state.moment = std::move(forces.moment);
   return state;
@@ -93,6 +94,9 @@ double Cycle::move(double duration, double dt) {
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
+    if (!bodies.orientation.empty())
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+        bodies.orientation[i] = contact::turned(bodies.orientation[i], dt * bodies.spin[i]);
     farthest[chunk] = way;
   });
   return *std::max_element(farthest.begin(), farthest.end());
@@ -121,7 +125,7 @@ void Cycle::step() {
 
   model::Bodies& bodies = state_.model.bodies;
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
-  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt}, sum);
+  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt, bodies.orientation}, sum);
   state_.force = std::move(sum.force);
   state_.moment = std::move(sum.moment);
 

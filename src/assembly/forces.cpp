@@ -2,6 +2,7 @@
 
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/orientation.hpp"
 
 #include <algorithm>
 
@@ -14,11 +15,13 @@ struct TrialState {
     position.reserve(model.bodies.position.size());
     for (std::size_t i = 0; i < model.bodies.position.size(); ++i)
       position.emplace_back(model.bodies.position[i] + displacement.translation[i]);
+    orientation = turned_orientations(model.bodies, displacement.rotation);
   }
-  Trial trial() const { return {position, moved.translation, moved.rotation, 1.0}; }
+  Trial trial() const { return {position, moved.translation, moved.rotation, 1.0, orientation}; }
 
   const Displacement& moved;
   std::vector<Vec3> position;
+  std::vector<Quat> orientation;
 };
 
 Displacement no_displacement(const Model& model) {
@@ -32,6 +35,13 @@ std::int64_t chunk_of_bodies(std::int64_t bodies) {
 }
 
 }  // namespace
+
+std::vector<Quat> turned_orientations(const model::Bodies& bodies, std::span<const Vec3> rotation) {
+  std::vector<Quat> result = bodies.orientation;
+  if (!rotation.empty())
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = contact::turned(result[i], rotation[i]);
+  return result;
+}
 
 ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns) {
   const std::int64_t bodies = model.bodies.size();
@@ -118,7 +128,7 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   sum.force.assign(bodies, Vec3::Zero());
   sum.moment.assign(turns ? bodies : 0, Vec3::Zero());
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = model.placement(trial.position, trial.orientation);
   auto plan = plans_.begin();
   model.contacts.for_each_group(
       [&](auto& group) { sum_group<turns, commit>(*plan++, group, placement, trial, sum); });
@@ -164,7 +174,7 @@ double elastic_energy(const Model& model, const Displacement& displacement) {
   constexpr std::int64_t chunk_size = 4096;
   const TrialState state(model, displacement);
   const Trial trial = state.trial();
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = model.placement(trial.position, trial.orientation);
   double energy = 0;
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;

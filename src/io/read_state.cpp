@@ -73,10 +73,14 @@ void read_bodies(const h5::File& hdf5, assembly::State& state) {
   });
   model::Bodies& bodies = state.model.bodies;
   if (hdf5.has(layout::spin)) bodies.spin = hdf5.read<Vec3>(layout::spin, count);
+  if (hdf5.has(layout::orientation)) bodies.orientation = hdf5.read<Quat>(layout::orientation, count);
   if (hdf5.has(layout::moment)) state.moment = hdf5.read<Vec3>(layout::moment, count);
   for (std::size_t i = 0; i < count; ++i) {
     if (!finite(bodies.position[i]))
       throw h5::Error(fmt::format("the position of ball {} is not finite", bodies.identity[i]));
+    // Written so that not-a-number fails too. Rounding leaves some ulps.
+    if (!bodies.orientation.empty() && !(std::abs(bodies.orientation[i].squaredNorm() - 1) < 1e-12))
+      throw h5::Error(fmt::format("the orientation of ball {} is no unit quaternion", bodies.identity[i]));
     if (!(bodies.radius[i] > 0) || !std::isfinite(bodies.radius[i]))
       throw h5::Error(
           fmt::format("the radius of ball {} is {} m, not positive", bodies.identity[i], bodies.radius[i]));

@@ -27,7 +27,8 @@ constexpr std::string_view compiler = "GCC " __VERSION__;
 
 /// Bytes that the file will take at most: its numbers, and room for HDF5's own structures.
 std::size_t largest_size(const assembly::State& state) {
-  constexpr std::size_t body = sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + 8;
+  constexpr std::size_t body =
+      sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + sizeof(Quat) + 8;
   std::size_t size = (1U << 20U) + state.settings.document.size() + body * state.model.bodies.position.size();
   state.model.contacts.for_each_group([&](const auto& group) {
     size += (1U << 14U) + group.pairs.size() * (sizeof(contact::Pair) + sizeof(group.states[0]));
@@ -49,6 +50,8 @@ void write_bodies(const assembly::State& state, h5::File& file) {
     file.write(path, column);
   });
   if (!state.model.bodies.spin.empty()) file.write(layout::spin, state.model.bodies.spin);
+  if (!state.model.bodies.orientation.empty())
+    file.write(layout::orientation, state.model.bodies.orientation);
   if (!state.moment.empty()) file.write(layout::moment, state.moment);
 }
 

@@ -14,6 +14,9 @@ struct Displacement {
   std::vector<Vec3> rotation;     ///< [bodies] θ, rad; or empty
 };
 
+/// The orientations of bodies after rotations θ [bodies] (rad; or empty: none); empty where bodies have none.
+std::vector<Quat> turned_orientations(const model::Bodies& bodies, std::span<const Vec3> rotation);
+
 /// Where bodies are and how they came there from the committed state: by u = duration · velocity and
 /// θ = duration · spin. The cycle passes its velocities and its step; displacements are velocities for a
 /// duration of one.
@@ -22,6 +25,7 @@ struct Trial {
   std::span<const Vec3> velocity;  ///< [bodies]
   std::span<const Vec3> spin;      ///< [bodies]; or empty: nothing turns
   double duration = 1;
+  std::span<const Quat> orientation{};  ///< [bodies] turned by θ; or empty where nothing asks for it
 
   contact::SideMotion side(std::int32_t body) const {
     const auto i = static_cast<std::size_t>(body);

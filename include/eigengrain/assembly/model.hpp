@@ -18,9 +18,9 @@ struct Model {
   contact::Contacts contacts;
 
   /// The sides of contacts with the bodies where they are, or at trial positions [bodies].
-  contact::Placement placement() const { return placement(bodies.position); }
-  contact::Placement placement(std::span<const Vec3> position) const {
-    return {position, bodies.radius, walls, cell};
+  contact::Placement placement() const { return placement(bodies.position, bodies.orientation); }
+  contact::Placement placement(std::span<const Vec3> position, std::span<const Quat> orientation) const {
+    return {position, bodies.radius, walls, cell, orientation};
   }
 };
 

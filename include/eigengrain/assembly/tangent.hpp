@@ -21,7 +21,7 @@ concept TangentSink = requires(S& sink, std::int32_t body, const Mat12& k) {
 /// state and up to the size of the increment over the radius elsewhere. Nothing is stored in the contacts.
 template <TangentSink Sink>
 void assemble_tangent(const Model& model, const Trial& trial, Sink& sink) {
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = model.placement(trial.position, trial.orientation);
   model.contacts.for_each_group([&](const auto& group) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;

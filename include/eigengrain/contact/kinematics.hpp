@@ -27,6 +27,7 @@ struct Placement {
   std::span<const double> radius;  ///< [bodies] m
   std::span<const model::Plane> walls;
   const model::PeriodicCell& cell;
+  std::span<const Quat> orientation{};  ///< [bodies] or empty; a trial orientation where position is one
 };
 
 /// Side a is a ball, side b another ball (or an image of the same one).

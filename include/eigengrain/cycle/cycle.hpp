@@ -26,6 +26,7 @@ assembly::State start(const model::Scene& scene);
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
+///   orientation         q <- exp(v₊ Δt of the spin) q, where the scene has orientations
 ///   contacts            the list, where a body has moved by half the skin; forces from the new positions,
 ///   the
 ///                       increments v₊ Δt and the old history, which is committed at once
