@@ -62,8 +62,10 @@ State start(const model::Scene& scene) {
   state.list.position = bodies.position;
 
   assembly::BodyForces forces;
-  assembly::ContactForceSum(state.model, state.turns())
-      .advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation}, forces);
+  assembly::ContactForceSum contacts(state.model, state.turns());
+  contacts.advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation},
+                   forces);
+  assembly::note_breaks(state, contacts.broken());
   state.force = std::move(forces.force);
   state.moment = std::move(forces.moment);
   return state;
@@ -132,6 +134,7 @@ void Cycle::step() {
   state_.dt = dt;
   state_.time += dt;
   ++state_.step;
+  if (!forces_.broken().empty()) assembly::note_breaks(state_, forces_.broken());
   if (expired || (policy_.every > 0 && state_.step % policy_.every == 0)) choose_timestep();
 }
 

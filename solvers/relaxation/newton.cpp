@@ -303,9 +303,10 @@ void commit(State& state, const Displacement& moved) {
   for (std::size_t i = 0; i < bodies.position.size(); ++i) bodies.position[i] += moved.translation[i];
   bodies.orientation = assembly::turned_orientations(bodies, moved.rotation);
   assembly::BodyForces sum;
-  assembly::ContactForceSum(state.model, state.turns())
-      .advance(state.model, {bodies.position, moved.translation, moved.rotation, 1.0, bodies.orientation},
-               sum);
+  assembly::ContactForceSum contacts(state.model, state.turns());
+  contacts.advance(state.model, {bodies.position, moved.translation, moved.rotation, 1.0, bodies.orientation},
+                   sum);
+  assembly::note_breaks(state, contacts.broken());
   state.force = std::move(sum.force);
   state.moment = std::move(sum.moment);
 }

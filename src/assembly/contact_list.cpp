@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/contact_list.hpp"
 
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/search/candidates.hpp"
 
@@ -20,9 +21,21 @@ using contact::AnyGroup;
 using contact::ContactGroup;
 using contact::Pair;
 
+/// Whether the bonds of a rule are in the group of its law (a contact bond), not beside it.
+bool bond_is_law(const model::ContactRule& rule) {
+  bool result = false;
+  for_each_type(contact::BondTypes{}, [&](auto tag) {
+    using Bond = typename decltype(tag)::type;
+    if (Bond::name == rule.bond->kind) result = !Bond::additive;
+  });
+  return result;
+}
+
 template <class Kinematics>
 AnyGroup new_group(const model::ContactRule& rule, std::int32_t index) {
   std::optional<AnyGroup> group;
+  if constexpr (std::is_same_v<Kinematics, contact::BallBall>)
+    if (rule.bond && bond_is_law(rule)) return new_bond_group(rule, index);
   for_each_type(contact::LawTypes{}, [&](auto tag) {
     using Law = typename decltype(tag)::type;
     if (group || Law::name != rule.law) return;
@@ -228,10 +241,13 @@ AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, 
 
 bool needs_rotation(const model::Scene& scene) {
   bool turns = false;
-  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
-    if (scene.contacts[r].law == "none") continue;
-    const AnyGroup group = new_group<contact::BallBall>(scene.contacts[r], static_cast<std::int32_t>(r));
+  const auto ask = [&](const AnyGroup& group) {
     turns = turns || std::visit([](const auto& g) { return g.law.needs_rotation(); }, group);
+  };
+  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
+    const model::ContactRule& rule = scene.contacts[r];
+    if (rule.bond) ask(new_bond_group(rule, static_cast<std::int32_t>(r)));
+    if (rule.law != "none") ask(new_group<contact::BallBall>(rule, static_cast<std::int32_t>(r)));
   }
   return turns;
 }
@@ -245,6 +261,7 @@ void list_contacts(Model& model, const model::Scene& scene, double reach, NewCon
                                touching);
   list_kind<contact::BallPlane>(ball_wall_pairs(scene, model, reach), scene, before, model, touching_only,
                                 touching);
+  carry_bonds(before, model);
 }
 
 void renew_list(State& state, double reach) {

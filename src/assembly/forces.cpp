@@ -5,6 +5,7 @@
 #include "eigengrain/contact/orientation.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace eigengrain::assembly {
 namespace {
@@ -26,6 +27,22 @@ struct TrialState {
 
 Displacement no_displacement(const Model& model) {
   return {std::vector<Vec3>(model.bodies.position.size(), Vec3::Zero()), {}};
+}
+
+template <class Group>
+BondBreak break_of(const Group& group, std::size_t c, const model::Bodies& bodies,
+                   const contact::Placement& placement, const contact::ContactGeometry& geometry,
+                   std::optional<contact::BreakMode> mode) {
+  EIGENGRAIN_ASSERT(mode.has_value());
+  const auto a = static_cast<std::size_t>(group.pairs[c].a);
+  const auto b = static_cast<std::size_t>(group.pairs[c].b);
+  BondBreak found{.first = bodies.identity[a],
+                  .second = bodies.identity[b],
+                  .place = placement.position[a] + geometry.lever_a,
+                  .normal = geometry.normal,
+                  .mode = mode.value_or(contact::BreakMode::tension),
+                  .rule = group.rule};
+  return found;
 }
 
 /// Bodies of a chunk: few enough for the caches and for several threads, many enough that most contacts stay
@@ -79,10 +96,11 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
 }
 
 template <bool turns, bool commit, class Group>
-void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement,
-                                const Trial& trial, BodyForces& sum) {
+void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const model::Bodies& bodies,
+                                const contact::Placement& placement, const Trial& trial, BodyForces& sum) {
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using State = typename std::decay_t<Group>::State;
+  using Law = typename std::decay_t<Group>::LawType;
   // Flat: the small functions of kinematics and laws are many, and calls among them pass everything through
   // memory.
   const auto one_chunk = [&](std::int64_t, std::int64_t, std::int64_t chunk) __attribute__((flatten)) {
@@ -101,8 +119,12 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
         continue;
       }
       State next;
-      const contact::ContactForce f =
-          group.law.evaluate(motion_in<Kinematics>(group.law, placement, trial, pair, geometry), old, next);
+      const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+      const contact::ContactForce f = group.law.evaluate(motion, old, next);
+      if constexpr (commit && contact::BondLaw<Law>)
+        if (old.bonded() && !next.bonded())
+          broken_in_chunk_[static_cast<std::size_t>(chunk)].push_back(
+              break_of(group, c, bodies, placement, geometry, group.law.failure(motion, old)));
       if constexpr (commit) group.states[c] = next;
       const contact::EndForces ends = contact::end_forces(geometry, f);
       sum.force[pair.a] += ends.force_a;
@@ -119,7 +141,13 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
       }
     }
   };
+  if constexpr (commit && contact::BondLaw<Law>) broken_in_chunk_.resize(plan.starts.size());
   for_chunks(std::ssize(sum.force), chunk_size_, one_chunk);
+  if constexpr (commit && contact::BondLaw<Law>)
+    for (std::vector<BondBreak>& chunk : broken_in_chunk_) {
+      broken_.insert(broken_.end(), chunk.begin(), chunk.end());
+      chunk.clear();
+    }
 }
 
 template <bool turns, bool commit, class ModelRef>
@@ -128,10 +156,11 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   sum.force.assign(bodies, Vec3::Zero());
   sum.moment.assign(turns ? bodies : 0, Vec3::Zero());
+  if constexpr (commit) broken_.clear();
   const contact::Placement placement = model.placement(trial.position, trial.orientation);
   auto plan = plans_.begin();
   model.contacts.for_each_group(
-      [&](auto& group) { sum_group<turns, commit>(*plan++, group, placement, trial, sum); });
+      [&](auto& group) { sum_group<turns, commit>(*plan++, group, model.bodies, placement, trial, sum); });
   add_foreign(sum);
 }
 

@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/model.hpp"
 
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 
 namespace eigengrain::assembly {
@@ -11,8 +12,11 @@ Model build_model(const model::Scene& scene, double reach) {
               .gravity = scene.gravity,
               .local_damping = scene.local_damping,
               .contacts = {}};
+  if (needs_orientation(scene))
+    model.bodies.orientation.assign(model.bodies.position.size(), Quat::Identity());
   model::sort_along_curve(model.bodies);
   list_contacts(model, scene, reach, NewContacts::formed);
+  make_bonds(model, scene);
   return model;
 }
 

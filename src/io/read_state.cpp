@@ -106,6 +106,17 @@ void refuse_changes(const model::Scene& stored, const model::Scene& now, const f
       refuse(file, fmt::format("materials[{}].density: {} kg/m3; the balls of a state have their masses from "
                                "{} kg/m3 and keep them; leave it out, or start from the scene",
                                k, now.materials[k].density, stored.materials[k].density));
+  for (std::size_t r = 0; r < std::min(now.contacts.size(), stored.contacts.size()); ++r) {
+    const auto kind = [&](const model::Scene& scene) {
+      const auto& bond = scene.contacts[r].bond;
+      return bond ? bond->kind : std::string("none");
+    };
+    if (kind(now) != kind(stored))
+      refuse(file,
+             fmt::format("contacts[{}].bond: {}; the bonds of a state are those it was started with ({}); "
+                         "keep the kind, or start from the scene",
+                         r, kind(now), kind(stored)));
+  }
   if (now.walls.size() != stored.walls.size())
     refuse(file, fmt::format("walls: {} planes; the state has {}, and its contacts name them by number; keep "
                              "their number and their order",

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 #include <vector>
 
 /// Scenes of a few bodies for tests, built in code. Masses are given, not computed from a density, so that
@@ -59,6 +60,17 @@ class SceneBuilder {
     if (b.spin.empty() && spin.isZero(0)) return *this;
     b.spin.resize(b.position.size(), Vec3::Zero());
     b.spin.back() = spin;
+    return *this;
+  }
+  /// Bonds of the scene's one contact rule.
+  SceneBuilder& bonded(model::BondRule bond) {
+    scene_.contacts.back().bond = std::move(bond);
+    return *this;
+  }
+  /// No law between balls, so that bonds are alone.
+  SceneBuilder& without_law() {
+    scene_.contacts.back().law = "none";
+    scene_.contacts.back().parameters.clear();
     return *this;
   }
   SceneBuilder& gravity(const Vec3& g) {

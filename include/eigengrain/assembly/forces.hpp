@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/bond_break.hpp"
 #include "eigengrain/assembly/model.hpp"
 
 #include <cstdint>
@@ -35,7 +36,7 @@ struct Trial {
 
 /// The motion of a contact in a trial state, as its law wants it.
 template <class Kinematics, class Law>
-contact::ContactMotion motion_in(const Law& law, const contact::Placement& placement, const Trial& trial,
+contact::MotionOf<Law> motion_in(const Law& law, const contact::Placement& placement, const Trial& trial,
                                  const contact::Pair& pair, const contact::ContactGeometry& geometry) {
   contact::SideMotion second;
   if constexpr (Kinematics::second_is_body) second = trial.side(pair.b);
@@ -64,6 +65,9 @@ class ContactForceSum {
   /// The same, and the contacts remember: the trial displacement becomes the committed state.
   void advance(Model& model, const Trial& trial, BodyForces& sum);
 
+  /// Bonds that broke in the last `advance`, in the order of the contacts; times are not filled in.
+  std::span<const BondBreak> broken() const { return broken_; }
+
  private:
   /// A group's contacts by chunk of their first body, and where each puts its force on a body elsewhere.
   struct GroupPlan {
@@ -75,8 +79,8 @@ class ContactForceSum {
   template <bool turns, bool commit, class ModelRef>
   void sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum);
   template <bool turns, bool commit, class Group>
-  void sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement, const Trial& trial,
-                 BodyForces& sum);
+  void sum_group(const GroupPlan& plan, Group& group, const model::Bodies& bodies,
+                 const contact::Placement& placement, const Trial& trial, BodyForces& sum);
   void add_foreign(BodyForces& sum) const;
 
   std::int64_t chunk_size_ = 0;
@@ -85,6 +89,8 @@ class ContactForceSum {
   std::vector<std::int32_t> foreign_starts_;  ///< [bodies + 1] slots of a body
   std::vector<Vec3> foreign_force_;           ///< [slots]
   std::vector<Vec3> foreign_moment_;
+  std::vector<BondBreak> broken_;
+  std::vector<std::vector<BondBreak>> broken_in_chunk_;  ///< of the group at hand
 };
 
 /// Contact forces after a trial displacement. Nothing is stored in the contacts.

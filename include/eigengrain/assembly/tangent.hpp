@@ -29,13 +29,17 @@ void assemble_tangent(const Model& model, const Trial& trial, Sink& sink) {
       const contact::Pair& pair = group.pairs[c];
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
       if (!group.law.acts(contact::at_rest(geometry), group.states[c])) continue;
-      const contact::ContactMotion motion =
-          motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
-      typename Group::State discarded;
-      const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
-      sink.add(pair.a, Kinematics::second_is_body ? pair.b : contact::no_body,
-               contact::consistent_tangent(geometry, Kinematics::curvature(geometry), force,
-                                           group.law.tangent(motion, group.states[c])));
+      const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+      const auto tangent = group.law.tangent(motion, group.states[c]);
+      const std::int32_t second = Kinematics::second_is_body ? pair.b : contact::no_body;
+      if constexpr (contact::in_total_form<typename Group::LawType>) {
+        sink.add(pair.a, second, tangent);
+      } else {
+        typename Group::State discarded;
+        const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
+        sink.add(pair.a, second,
+                 contact::consistent_tangent(geometry, Kinematics::curvature(geometry), force, tangent));
+      }
     }
   });
 }

@@ -109,12 +109,23 @@ ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, cons
   return motion;
 }
 
+/// The pose of a contact between two bodies that have orientations.
+inline ContactPose pose_of(const Placement& placement, const Pair& pair, const ContactGeometry& geometry) {
+  return {.lever_a = geometry.lever_a,
+          .lever_b = geometry.lever_b,
+          .orientation_a = placement.orientation[static_cast<std::size_t>(pair.a)],
+          .orientation_b = placement.orientation[static_cast<std::size_t>(pair.b)]};
+}
+
 /// The motion of a contact as its law wants it.
 template <class Kinematics, class Law>
-ContactMotion motion_for(const Law& law, const Placement& placement, const Pair& pair,
+MotionOf<Law> motion_for(const Law& law, const Placement& placement, const Pair& pair,
                          const ContactGeometry& geometry, const SideMotion& a, const SideMotion& b) {
-  return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
-                        : contact_motion(geometry, a, b);
+  if constexpr (in_total_form<Law>)
+    return pose_of(placement, pair, geometry);
+  else
+    return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
+                          : contact_motion(geometry, a, b);
 }
 
 /// What a contact does to its ends: force (N) and moment about the centre (N m) on each.
@@ -136,6 +147,15 @@ inline EndForces end_forces(const ContactGeometry& geometry, const ContactForce&
 /// The motion of a contact that stands still.
 inline ContactMotion at_rest(const ContactGeometry& geometry) {
   return contact_motion(geometry, {}, {});
+}
+
+/// The same as the law wants it.
+template <class Law>
+MotionOf<Law> at_rest_for(const Placement& placement, const Pair& pair, const ContactGeometry& geometry) {
+  if constexpr (in_total_form<Law>)
+    return pose_of(placement, pair, geometry);
+  else
+    return at_rest(geometry);
 }
 
 }  // namespace eigengrain::contact

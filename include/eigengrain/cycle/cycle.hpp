@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
+#include <vector>
 
 /// The explicit cycle: leapfrog (PFC3D eqs. 1.25-1.27) with local damping (eq. 1.47).
 namespace eigengrain::cycle {
@@ -45,6 +47,8 @@ class Cycle {
   }
 
   const assembly::State& state() const { return state_; }
+  /// Bonds that broke since this was last asked, in their order; the state forgets them.
+  std::vector<assembly::BondBreak> take_breaks() { return std::exchange(state_.breaks, {}); }
   /// The state, moved out; the cycle is over.
   assembly::State release() { return std::move(state_); }
 

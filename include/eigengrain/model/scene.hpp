@@ -17,6 +17,13 @@ struct Material {
   double density = 0;  ///< kg/m³; 0 for a material that only walls are made of
 };
 
+/// Bonds that are made between the balls of a contact rule when a scene starts.
+struct BondRule {
+  std::string kind;                ///< a name of the table of bonds (contact/bonds.hpp)
+  std::vector<double> parameters;  ///< in the order of the kind's own description; flags as 0 or 1
+  double gap = 0;                  ///< surfaces that are no more than this apart are bonded, m
+};
+
 /// The law between two materials. An index of any_material matches every material.
 struct ContactRule {
   static constexpr std::int32_t any_material = -1;
@@ -25,6 +32,7 @@ struct ContactRule {
   std::int32_t second = any_material;  ///< index into Scene::materials
   std::string law;                     ///< a name of the law table (contact/law_table.hpp), or "none"
   std::vector<double> parameters;      ///< in the order of the law's own description; flags as 0 or 1
+  std::optional<BondRule> bond{};
 
   bool matches(std::int32_t a, std::int32_t b) const {
     const auto fits = [](std::int32_t mine, std::int32_t other) {

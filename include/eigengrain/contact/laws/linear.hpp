@@ -134,14 +134,15 @@ class Linear {
 
   /// Whether this class is the one for these parameters (see linear_frictionless.hpp).
   static bool serves(std::span<const double> /*values*/) { return true; }
-  static Linear from_values(std::span<const double> values) {
-    return Linear({.kn = values[0],
-                   .ks = values[1],
-                   .friction = values[2],
-                   .tension = values[3] != 0,
-                   .small_angle = values[4] != 0,
-                   .end_step = values[5] != 0});
+  static Params params_from(std::span<const double> values) {
+    return {.kn = values[0],
+            .ks = values[1],
+            .friction = values[2],
+            .tension = values[3] != 0,
+            .small_angle = values[4] != 0,
+            .end_step = values[5] != 0};
   }
+  static Linear from_values(std::span<const double> values) { return Linear(params_from(values)); }
 
  private:
   /// Shear force before the slip check. Zero in the step in which the contact forms.
