@@ -158,6 +158,7 @@ void Part::put_back(const State& part, State& whole) const {
     bodies.position[row] = part.model.bodies.position[k];
     bodies.velocity[row] = part.model.bodies.velocity[k];
     if (whole.turns()) bodies.spin[row] = part.model.bodies.spin[k];
+    if (!bodies.orientation.empty()) bodies.orientation[row] = part.model.bodies.orientation[k];
   }
   whole.model.contacts.for_each_group([&](auto& group) { erase(group, free); });
   part.model.contacts.for_each_group(
@@ -166,10 +167,13 @@ void Part::put_back(const State& part, State& whole) const {
 
   assembly::BodyForces sum;
   const std::vector<Vec3> still(bodies.position.size(), Vec3::Zero());
-  assembly::ContactForceSum(whole.model, whole.turns())
-      .advance(whole.model,
-               {bodies.position, still, whole.turns() ? std::span(still) : std::span<const Vec3>(), 1.0},
-               sum);
+  assembly::ContactForceSum contacts(whole.model, whole.turns());
+  contacts.advance(whole.model,
+                   {bodies.position, still, whole.turns() ? std::span(still) : std::span<const Vec3>(), 1.0,
+                    bodies.orientation},
+                   sum);
+  assembly::note_breaks(whole, part.breaks);
+  assembly::note_breaks(whole, contacts.broken());
   whole.force = std::move(sum.force);
   whole.moment = std::move(sum.moment);
 }

@@ -37,10 +37,12 @@ Survey survey(const Model& model) {
     using Kinematics = typename Group::KinematicsType;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
       const contact::Pair& pair = group.pairs[c];
-      const contact::ContactMotion motion = contact::at_rest(Kinematics::geometry(placement, pair));
+      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+      const contact::ContactMotion motion = contact::at_rest(geometry);
       if (!group.law.acts(motion, group.states[c])) continue;
       typename Group::State discarded;
-      result.force += group.law.evaluate(motion, group.states[c], discarded).force.norm();
+      const auto full = contact::at_rest_for<typename Group::LawType>(placement, pair, geometry);
+      result.force += group.law.evaluate(full, group.states[c], discarded).force.norm();
       ++result.contacts;
       const double k = group.law.stiffness(motion, group.states[c]).normal;
       double rounding = rounding_along(motion.normal, model.bodies.position[pair.a]);

@@ -1,7 +1,10 @@
 #include "restore_contacts.hpp"
 
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/base/error.hpp"
+#include "eigengrain/contact/bonds.hpp"
+#include "eigengrain/contact/law_table.hpp"
 
 #include "state_layout.hpp"
 
@@ -33,13 +36,17 @@ class GroupReader {
                       "that are in use",
                       rule, rules));
     const model::ContactRule& now = settings_.contacts[static_cast<std::size_t>(rule)];
-    if (now.law != law)
+    const bool bonds = contact::find_bond(law) != nullptr;
+    if (!bonds && now.law != law)
       refuse(
           fmt::format("contacts[{}]: law {}; the state has contacts with the law {} there, whose history "
                       "another law cannot continue",
                       rule, now.law, law));
-    contact::AnyGroup group =
-        assembly::new_group(file_.text(path_, "kinematics"), now, static_cast<std::int32_t>(rule));
+    if (bonds && (!now.bond || now.bond->kind != law))
+      damaged(fmt::format("{} bonds of contacts[{}], whose settings have none", law, rule));
+    const auto index = static_cast<std::int32_t>(rule);
+    contact::AnyGroup group = bonds ? assembly::new_bond_group(now, index)
+                                    : assembly::new_group(file_.text(path_, "kinematics"), now, index);
     std::visit([&](auto& concrete) { fill(concrete); }, group);
     return group;
   }
@@ -60,9 +67,18 @@ class GroupReader {
     check_pairs<typename Group::KinematicsType>(group.pairs);
     check_rules<typename Group::KinematicsType>(group);
     const std::string stored = file_.text(path_, "state_fields");
+    if constexpr (contact::in_total_form<typename Group::LawType>)
+      if (model_.bodies.orientation.empty()) damaged("bonds, but balls without orientation");
     if (stored == layout::state_fields<typename Group::LawType>())
-      read_states(group);
-    else
+      read_states(group, stored);
+    else if constexpr (contact::BondLaw<typename Group::LawType>) {
+      // The dashpots of a law come on or go: the bond goes on.
+      if (!Group::LawType::additive) return read_states(group, stored);
+      refuse(fmt::format(
+          "contacts[{}].bond: another form than that of the bonds of the state; keep `incremental` "
+          "as it was",
+          settings_.contacts[static_cast<std::size_t>(group.rule)].entry));
+    } else
       form_states(group);
   }
 
@@ -132,13 +148,18 @@ class GroupReader {
     }
   }
 
+  /// stored  the fields that the file has, by name; others are as in a new state
   template <class Group>
-  void read_states(Group& group) const {
+  void read_states(Group& group, const std::string& stored) const {
     group.states.resize(group.pairs.size());
     if constexpr (!std::is_empty_v<typename Group::State>) {
       std::size_t offset = 0;
       for (const contact::StateField& field : Group::LawType::state_fields) {
         const auto components = static_cast<std::size_t>(field.components);
+        if (fmt::format(" {} ", stored).find(fmt::format(" {} ", field.name)) == std::string::npos) {
+          offset += components * sizeof(double);
+          continue;
+        }
         const std::vector<double> values = file_.read_doubles(fmt::format("{}/{}", path_, field.name),
                                                               group.states.size(), field.components);
         for (std::size_t c = 0; c < group.states.size(); ++c) {

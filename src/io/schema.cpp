@@ -23,7 +23,8 @@ std::vector<std::string> lattice_names() {
   return names;
 }
 
-/// Everything but the parameters of the laws. The description says what the reader does with the value.
+/// Everything but the parameters of the laws and bonds. The description says what the reader does with the
+/// value.
 std::vector<KeyDescription> own_keys() {
   return {
       {.path = "gravity",
@@ -97,6 +98,25 @@ std::vector<KeyDescription> own_keys() {
        .words = law_names(),
        .example = "linear",
        .description = "the contact law, see below; `none`: the two do not see each other"},
+
+      {.path = "contacts[].bond",
+       .kind = section,
+       .example = "{kind: parallel, kn: 1e12 Pa/m, tension: 5 MPa, gap: 10 um}",
+       .description = "bonds between the balls of these pairs, made when the scene starts; absent: none"},
+      {.path = "contacts[].bond.kind",
+       .kind = word,
+       .required = true,
+       .words = bond_names(),
+       .example = "parallel",
+       .description = "the kind of bond, see below"},
+      {.path = "contacts[].bond.gap",
+       .kind = quantity,
+       .unit = "m",
+       .range = {.low = 0},
+       .fallback = "0",
+       .example = "10 um",
+       .description = "pairs of balls whose surfaces are no more than this apart are bonded; rounding of "
+                      "positions may set balls that should touch a little apart"},
 
       {.path = "balls",
        .kind = section_list,
@@ -588,9 +608,12 @@ std::vector<KeyDescription> own_keys() {
   };
 }
 
-KeyDescription law_key(const contact::LawDescription& law, const contact::ParameterDescription& parameter) {
+/// section  that the parameter stands in: of a contact or of its bond
+KeyDescription law_key(std::string_view section, const contact::LawDescription& law,
+                       const contact::ParameterDescription& parameter) {
   const bool is_flag = parameter.kind == contact::ParameterDescription::Kind::flag;
-  KeyDescription key{.path = fmt::format("contacts[].{}", parameter.name), .kind = is_flag ? flag : quantity};
+  KeyDescription key{.path = fmt::format("{}.{}", section, parameter.name),
+                     .kind = is_flag ? flag : quantity};
   key.law = law.name;
   key.unit = parameter.unit;
   key.description = parameter.description;
@@ -602,7 +625,9 @@ KeyDescription law_key(const contact::LawDescription& law, const contact::Parame
     return key;
   }
   key.range = {.low = parameter.minimum, .high = parameter.maximum, .low_allowed = parameter.minimum_allowed};
-  if (parameter.default_value) key.fallback = fmt::format("{}", *parameter.default_value);
+  // A default without bound is that of a key that is left out; no number says it.
+  if (parameter.default_value && *parameter.default_value < infinity)
+    key.fallback = fmt::format("{}", *parameter.default_value);
   const double valid = parameter.minimum > -infinity ? parameter.minimum + 1 : 1;
   key.example = key.unit.empty() ? fmt::format("{}", valid) : fmt::format("{} {}", valid, key.unit);
   return key;
@@ -613,7 +638,10 @@ std::vector<KeyDescription> all_keys() {
   std::vector<KeyDescription> of_laws;
   for (const contact::LawDescription& law : contact::law_descriptions())
     for (const contact::ParameterDescription& parameter : law.parameters)
-      of_laws.push_back(law_key(law, parameter));
+      of_laws.push_back(law_key("contacts[]", law, parameter));
+  for (const contact::LawDescription& bond : contact::bond_descriptions())
+    for (const contact::ParameterDescription& parameter : bond.parameters)
+      of_laws.push_back(law_key("contacts[].bond", bond, parameter));
   // A section's keys stand together: the laws' come behind the last of the contacts'.
   const auto behind = std::find_if(keys.begin(), keys.end(), [](const auto& k) { return k.path == "balls"; });
   keys.insert(behind, of_laws.begin(), of_laws.end());
@@ -648,6 +676,12 @@ std::vector<std::string> law_names() {
   std::vector<std::string> names;
   for (const contact::LawDescription& law : contact::law_descriptions()) names.emplace_back(law.name);
   names.emplace_back("none");
+  return names;
+}
+
+std::vector<std::string> bond_names() {
+  std::vector<std::string> names;
+  for (const contact::LawDescription& bond : contact::bond_descriptions()) names.emplace_back(bond.name);
   return names;
 }
 

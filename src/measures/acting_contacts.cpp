@@ -2,7 +2,10 @@
 
 #include "eigengrain/base/adjacency.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <tuple>
 
 namespace eigengrain::measures {
 namespace {
@@ -15,6 +18,8 @@ Vec3 across(const Vec3& v, const Vec3& n) {
 /// more.
 template <class Law, class State>
 bool slides(const Law& law, const contact::ContactMotion& motion, const State& state, const Vec3& force) {
+  if constexpr (contact::BondLaw<Law>)
+    if (state.bonded()) return false;
   constexpr double probe = 1e-6;  // of the shear force
   const double shear = across(force, motion.normal).norm();
   const double stiffness = law.stiffness(motion, state).shear;
@@ -26,33 +31,83 @@ bool slides(const Law& law, const contact::ContactMotion& motion, const State& s
   return raised - shear < 0.5 * probe * shear;
 }
 
+/// Bonds that add to another law on the same pair.
+template <class Law>
+constexpr bool beside_law() {
+  if constexpr (contact::BondLaw<Law>)
+    return Law::additive;
+  else
+    return false;
+}
+template <class Law>
+inline constexpr bool is_beside_law = beside_law<Law>();
+
+/// One contact of a group, if it acts.
+template <class Group>
+std::optional<ActingContact> acting(const Group& group, std::size_t c, const contact::Placement& placement) {
+  using Kinematics = typename Group::KinematicsType;
+  using Law = typename Group::LawType;
+  const contact::Pair& pair = group.pairs[c];
+  const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+  if (!group.law.acts(contact::at_rest(geometry), group.states[c])) return std::nullopt;
+  typename Group::State discarded;
+  const auto motion = contact::at_rest_for<Law>(placement, pair, geometry);
+  ActingContact contact;
+  contact.a = pair.a;
+  contact.normal = geometry.normal;
+  contact.force = group.law.evaluate(motion, group.states[c], discarded).force;
+  if constexpr (!is_beside_law<Law>)
+    contact.slides = slides(group.law, motion, group.states[c], contact.force);
+  if constexpr (Kinematics::second_is_body) {
+    contact.b = pair.b;
+    contact.branch = geometry.lever_a - geometry.lever_b;
+  } else {
+    contact.b = ActingContact::wall;
+    contact.branch = geometry.lever_a;
+  }
+  return contact;
+}
+
+/// Where a pair of bodies is among the contacts.
+struct Place {
+  contact::Pair pair;
+  std::size_t index;
+};
+bool precedes(const Place& left, const Place& right) {
+  return std::tie(left.pair.a, left.pair.b, left.pair.image) <
+         std::tie(right.pair.a, right.pair.b, right.pair.image);
+}
+
 }  // namespace
 
 std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
   std::vector<ActingContact> result;
+  std::vector<Place> between_bodies;
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
-    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      const contact::Pair& pair = group.pairs[c];
-      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
-      const contact::ContactMotion motion = contact::at_rest(geometry);
-      if (!group.law.acts(motion, group.states[c])) continue;
-      typename Group::State discarded;
-      ActingContact& contact = result.emplace_back();
-      contact.a = pair.a;
-      contact.normal = geometry.normal;
-      contact.force = group.law.evaluate(motion, group.states[c], discarded).force;
-      contact.slides = slides(group.law, motion, group.states[c], contact.force);
-      if constexpr (Kinematics::second_is_body) {
-        contact.b = pair.b;
-        contact.branch = geometry.lever_a - geometry.lever_b;
-      } else {
-        contact.b = ActingContact::wall;
-        contact.branch = geometry.lever_a;
+    if constexpr (!is_beside_law<typename Group::LawType>)
+      for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+        const std::optional<ActingContact> found = acting(group, c, placement);
+        if (!found) continue;
+        if constexpr (Kinematics::second_is_body) between_bodies.push_back({group.pairs[c], result.size()});
+        result.push_back(*found);
       }
-    }
+  });
+  std::sort(between_bodies.begin(), between_bodies.end(), precedes);
+  model.contacts.for_each_group([&](const auto& group) {
+    if constexpr (is_beside_law<typename std::decay_t<decltype(group)>::LawType>)
+      for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+        const std::optional<ActingContact> bond = acting(group, c, placement);
+        if (!bond) continue;
+        const Place wanted{group.pairs[c], 0};
+        const auto same = std::lower_bound(between_bodies.begin(), between_bodies.end(), wanted, precedes);
+        if (same != between_bodies.end() && !precedes(wanted, *same))
+          result[same->index].force += bond->force;
+        else
+          result.push_back(*bond);
+      }
   });
   return result;
 }

@@ -40,7 +40,8 @@ std::vector<Mat3> body_stresses(const assembly::Model& model) {
       const contact::Pair& pair = group.pairs[c];
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
       typename Group::State discarded;
-      const Vec3 force = group.law.evaluate(contact::at_rest(geometry), group.states[c], discarded).force;
+      const auto motion = contact::at_rest_for<typename Group::LawType>(placement, pair, geometry);
+      const Vec3 force = group.law.evaluate(motion, group.states[c], discarded).force;
       stress[pair.a] -= force * geometry.lever_a.transpose();
       if constexpr (Kinematics::second_is_body) stress[pair.b] += force * geometry.lever_b.transpose();
     }

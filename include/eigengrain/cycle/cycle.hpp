@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
+#include <vector>
 
 /// The explicit cycle: leapfrog (PFC3D eqs. 1.25-1.27) with local damping (eq. 1.47).
 namespace eigengrain::cycle {
@@ -26,6 +28,7 @@ assembly::State start(const model::Scene& scene);
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
+///   orientation         q <- exp(v₊ Δt of the spin) q, where the scene has orientations
 ///   walls               by the velocity that is given for the middle of the step
 ///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
 ///                       positions,
@@ -46,6 +49,8 @@ class Cycle {
   }
 
   const assembly::State& state() const { return state_; }
+  /// Bonds that broke since this was last asked, in their order; the state forgets them.
+  std::vector<assembly::BondBreak> take_breaks() { return std::exchange(state_.breaks, {}); }
   /// The state, moved out; the cycle is over.
   assembly::State release() { return std::move(state_); }
 
