@@ -202,6 +202,20 @@ TEST(Bonds, OfAStateKeepTheirKindAndForm) {
                          "(parallel); keep the kind, or start from the scene"));
 }
 
+TEST(Bonds, OfAStateStayWhenDashpotsComeOnAndGo) {
+  const io::TemporaryFolder folder;
+  const assembly::State before = cycle::start(io::read_scene_text(scene_text(false), ".", "scene.yaml"));
+  io::write_state(before, folder.path() / "plain.h5");
+  const State damped =
+      io::read_state(folder.path() / "plain.h5", std::vector<std::string>{"contacts.1.beta_n=0.2"});
+  EXPECT_EQ(assembly::count_bonds(damped.model), assembly::count_bonds(before.model));
+  io::write_state(damped, folder.path() / "damped.h5");
+  const State plain =
+      io::read_state(folder.path() / "damped.h5", std::vector<std::string>{"contacts.1.beta_n=0"});
+  EXPECT_EQ(assembly::count_bonds(plain.model), assembly::count_bonds(before.model));
+  EXPECT_EQ(shears_of(plain), shears_of(before));
+}
+
 std::string contents(const std::filesystem::path& file) {
   std::ifstream input(file);
   return {std::istreambuf_iterator<char>(input), {}};

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <random>
@@ -149,6 +150,23 @@ TEST(ContactBond, PullsFromTheStartOverAGap) {
   EXPECT_EQ(state.breaks[0].mode, BreakMode::tension);
   EXPECT_EQ(state.breaks[0].step, 0);
   EXPECT_EQ(state.force[0], Vec3(0, 0, 0));
+}
+
+TEST(ContactBond, HasTheDashpotsOfItsLawThatDoNotCountAgainstIt) {
+  std::vector<double> values = values_of("linear", {{"kn", 2}, {"ks", 1.5}, {"beta_n", 0.5}, {"beta_s", 1}});
+  values.insert(values.end(), {1.0, infinity});
+  ASSERT_FALSE(ContactBond::serves(values));
+  ASSERT_TRUE(contact::DampedContactBond::serves(values));
+  const auto bond = contact::DampedContactBond::from_values(values);
+  const auto held = bond.bond({.geometry = {n, 0, n, -n}, .radius_a = 1, .radius_b = 1});
+  contact::DampedContactBond::State next;
+  // The springs pull with 0.8, below the strength of 1; the dashpots with 2 β √(m k) V, far above it.
+  const ContactMotion motion{.normal = n, .overlap = -0.4, .velocity = {3, 0, 5}, .reduced_mass = 2};
+  const ContactForce f = bond.evaluate(motion, held, next);
+  EXPECT_TRUE(next.bonded());
+  EXPECT_NEAR(f.force.z(), -0.8 - 2 * 0.5 * std::sqrt(2 * 2.0) * 5, 1e-14);
+  EXPECT_NEAR(f.force.x(), -2 * std::sqrt(2 * 1.5) * 3, 1e-14);
+  EXPECT_EQ(bond.damping().normal, 0.5);
 }
 
 TEST(ContactBond, CarriesNoMoment) {

@@ -102,6 +102,11 @@ TEST(BondScene, AContactBondWantsTheLinearLawThatOpens) {
       mistakes("law: linear, kn: 1e5, tension: true", "{kind: contact}"),
       ElementsAre(HasSubstr("contacts[0].tension: springs with tension never open, so a contact bond means "
                             "nothing there; leave out one of the two")));
+  EXPECT_THAT(mistakes("law: linear, kn: 1e5, kr: 1, rolling_friction: 0.1", "{kind: contact}"),
+              ElementsAre(HasSubstr(
+                  "contacts[0].bond: a contact bond carries no moment, so it knows no rolling "
+                  "resistance; leave out `kr` and `rolling_friction`, or write \"kind: parallel\"")));
+  EXPECT_THAT(mistakes("law: linear, kn: 1e5, restitution: 0.5", "{kind: contact}"), ElementsAre());
 }
 
 }  // namespace
