@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/orientation.hpp"
 
 #include <fmt/format.h>
 
@@ -93,6 +94,9 @@ double Cycle::move(double duration, double dt) {
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
+    if (!bodies.orientation.empty())
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+        bodies.orientation[i] = contact::turned(bodies.orientation[i], dt * bodies.spin[i]);
     farthest[chunk] = way;
   });
   return *std::max_element(farthest.begin(), farthest.end());
@@ -123,15 +127,22 @@ void Cycle::step() {
 
   model::Bodies& bodies = state_.model.bodies;
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
-  forces_.advance(
-      state_.model,
-      {bodies.position, bodies.velocity, bodies.spin, dt, 1 / dt, walls_.any() ? &walls_ : nullptr}, sum);
+  forces_.advance(state_.model,
+                  {.position = bodies.position,
+                   .velocity = bodies.velocity,
+                   .spin = bodies.spin,
+                   .duration = dt,
+                   .orientation = bodies.orientation,
+                   .per_second = 1 / dt,
+                   .walls = walls_.any() ? &walls_ : nullptr},
+                  sum);
   state_.force = std::move(sum.force);
   state_.moment = std::move(sum.moment);
 
   state_.dt = dt;
   state_.time += dt;
   ++state_.step;
+  if (!forces_.broken().empty()) assembly::note_breaks(state_, forces_.broken());
   if (expired || (policy_.every > 0 && state_.step % policy_.every == 0)) choose_timestep();
 }
 

@@ -39,14 +39,20 @@ HeadOn head_on(const model::ContactRule& rule, std::int32_t index, double radius
   const contact::AnyGroup group = assembly::new_group(contact::BallBall::name, rule, index);
   return std::visit(
       [&](const auto& g) {
-        const Vec3 n = Vec3::UnitZ();
-        contact::ContactMotion motion{
-            .normal = n, .overlap = assembly::typical_overlap * radius, .reduced_radius = radius};
-        while (g.law.energy(motion, {}) < energy && motion.overlap < radius) motion.overlap *= 2;
-        HeadOn result{g.law.stiffness(motion, g.law.formed(n)), {}};
-        if constexpr (contact::asks_rate<typename std::decay_t<decltype(g)>::LawType>)
-          result.beta = g.law.damping();
-        return result;
+        using Law = typename std::decay_t<decltype(g)>::LawType;
+        // What forms contacts is never in total form: bonds beside a law are groups that a rule does not
+        // open.
+        if constexpr (contact::in_total_form<Law>)
+          return HeadOn{};
+        else {
+          const Vec3 n = Vec3::UnitZ();
+          contact::ContactMotion motion{
+              .normal = n, .overlap = assembly::typical_overlap * radius, .reduced_radius = radius};
+          while (g.law.energy(motion, {}) < energy && motion.overlap < radius) motion.overlap *= 2;
+          HeadOn result{g.law.stiffness(motion, g.law.formed(n)), {}};
+          if constexpr (contact::asks_rate<Law>) result.beta = g.law.damping();
+          return result;
+        }
       },
       group);
 }

@@ -184,8 +184,11 @@ class Equations {
     EIGENGRAIN_PETSC(VecRestoreArrayRead(x, &values));
     for (std::size_t i = 0; i < position_.size(); ++i)
       position_[i] = state_.model.bodies.position[i] + moved_.translation[i];
+    orientation_ = assembly::turned_orientations(state_.model.bodies, moved_.rotation);
   }
-  assembly::Trial trial() const { return {position_, moved_.translation, moved_.rotation, 1.0}; }
+  assembly::Trial trial() const {
+    return {position_, moved_.translation, moved_.rotation, 1.0, orientation_};
+  }
 
   const State& state_;
   assembly::LinearSystem system_;
@@ -198,6 +201,7 @@ class Equations {
   Vector mass_;  ///< of the unknowns: m and I/R²
   Displacement moved_;
   std::vector<Vec3> position_;
+  std::vector<Quat> orientation_;
   assembly::BodyForces sum_;
 };
 
@@ -297,9 +301,12 @@ Solver new_solver(Context& context) {
 void commit(State& state, const Displacement& moved) {
   model::Bodies& bodies = state.model.bodies;
   for (std::size_t i = 0; i < bodies.position.size(); ++i) bodies.position[i] += moved.translation[i];
+  bodies.orientation = assembly::turned_orientations(bodies, moved.rotation);
   assembly::BodyForces sum;
-  assembly::ContactForceSum(state.model, state.turns())
-      .advance(state.model, {bodies.position, moved.translation, moved.rotation, 1.0}, sum);
+  assembly::ContactForceSum contacts(state.model, state.turns());
+  contacts.advance(state.model, {bodies.position, moved.translation, moved.rotation, 1.0, bodies.orientation},
+                   sum);
+  assembly::note_breaks(state, contacts.broken());
   state.force = std::move(sum.force);
   state.moment = std::move(sum.moment);
 }

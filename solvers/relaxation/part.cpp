@@ -164,11 +164,13 @@ void Part::put_back(const State& part, State& whole) const {
     bodies.position[row] = part.model.bodies.position[k];
     bodies.velocity[row] = part.model.bodies.velocity[k];
     if (whole.turns()) bodies.spin[row] = part.model.bodies.spin[k];
+    if (!bodies.orientation.empty()) bodies.orientation[row] = part.model.bodies.orientation[k];
   }
   whole.model.contacts.for_each_group([&](auto& group) { erase(group, free); });
   part.model.contacts.for_each_group(
       [&](const auto& group) { append(group, free_, bodies_, matching(whole.model.contacts, group)); });
   assembly::renew_list(whole, whole.list.skin);
+  assembly::note_breaks(whole, part.breaks);
   assembly::renew_forces(whole);
 }
 

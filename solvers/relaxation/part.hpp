@@ -28,8 +28,8 @@ class Part {
   assembly::State& state() { return state_; }
   /// Whether everything in a state that came from this part is near enough to where it was at first.
   bool has_room(const assembly::State& state) const;
-  /// Brings what the part has become, velocities and contacts with their history, back into the whole, and
-  /// forces up to date. The whole must be as the constructor left it.
+  /// Brings what the part has become, velocities, contacts and bonds with their history and bonds that broke,
+  /// back into the whole, and forces up to date. The whole must be as the constructor left it.
   void put_back(const assembly::State& part, assembly::State& whole) const;
 
  private:

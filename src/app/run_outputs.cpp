@@ -50,6 +50,10 @@ RunOutputs::RunOutputs(const Input& input)
     for (io::Series& series : series_)
       if (input.continued && std::filesystem::exists(series.list_file())) series.continue_from(step);
   }
+  const auto& rules = input.state.settings.contacts;
+  if (std::any_of(rules.begin(), rules.end(), [](const auto& rule) { return rule.bond.has_value(); }))
+    breaks_.emplace(input.folder, input.stem + "-breaks.csv",
+                    input.continued ? std::optional(step) : std::nullopt);
   for (model::History history : input.state.settings.histories) {
     // A state with a name of its own, as relax makes it, is another run: its tables stand beside the scene's.
     if (input.stem != std::filesystem::path(input.state.settings.name).stem())
@@ -75,12 +79,17 @@ void RunOutputs::write_due(const State& state) {
     if (history.due(state.step)) history.add(state, values_for(history.history(), state));
 }
 
+void RunOutputs::write_breaks(std::span<const assembly::BondBreak> breaks) {
+  if (breaks_) breaks_->add(breaks);
+}
+
 bool RunOutputs::checkpoint_due(std::int64_t step) const {
   return choice_.checkpoint_every > 0 && step % choice_.checkpoint_every == 0;
 }
 
 void RunOutputs::save(const State& state) {
   for (io::HistoryFile& history : histories_) history.sync();
+  if (breaks_) breaks_->sync();
   io::write_state(state, state_file_);
   saved_step_ = state.step;
 }

@@ -56,7 +56,10 @@ void relax(const Options& options) {
   io::write_state(input.state, file);
   auto report = to_json(result, input.state);
   report["state"] = file.string();
+  if (!input.state.breaks.empty()) report["bonds_broken"] = input.state.breaks.size();
   write_json(options.json, report);
+  if (!input.state.breaks.empty())
+    fmt::print("{} broke on the way\n", counted(std::ssize(input.state.breaks), "bond", "bonds"));
   fmt::print("{}: {}{} in {} ({}), {} of Newton\n{}\nstate: {}\n", input.state.settings.name,
              counted(result.explicit_steps, "explicit step", "explicit steps"),
              result.part_steps > 0 ? fmt::format(" and {} of a few balls", grouped(result.part_steps)) : "",

@@ -33,18 +33,17 @@ double rounding_along(const Vec3& n, const Vec3& x) {
 
 Survey survey(const Model& model) {
   Survey result{std::vector<Touch>(static_cast<std::size_t>(model.bodies.size())), 0, 0.0};
-  for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
+  const contact::Placement placement = model.placement();
+  for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
-    const contact::ContactMotion motion = contact::at_rest(geometry);
-    typename Group::State discarded;
-    result.force += group.law.evaluate(motion, group.states[c], discarded).force.norm();
+    result.force += contact::spring_force(group.law, placement, pair, geometry, group.states[c]).force.norm();
     ++result.contacts;
-    const double k = group.law.stiffness(motion, group.states[c]).normal;
-    double rounding = rounding_along(motion.normal, model.bodies.position[pair.a]);
+    const double k = group.law.stiffness(contact::at_rest(geometry), group.states[c]).normal;
+    double rounding = rounding_along(geometry.normal, model.bodies.position[pair.a]);
     if constexpr (Kinematics::second_is_body)
-      rounding += rounding_along(motion.normal, model.bodies.position[pair.b]);
+      rounding += rounding_along(geometry.normal, model.bodies.position[pair.b]);
     const auto add = [&](std::int32_t body) {
       ++result.touch[body].contacts;
       result.touch[body].rounding += k * k * rounding;

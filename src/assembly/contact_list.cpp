@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/contact_list.hpp"
 
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
@@ -25,25 +26,25 @@ using contact::AnyGroup;
 using contact::ContactGroup;
 using contact::Pair;
 
-/// The values of all parameters of a law: those of the rule, and defaults for those left out at the end.
-std::vector<double> completed(const model::ContactRule& rule, std::int32_t index,
-                              std::span<const contact::ParameterDescription> parameters) {
-  std::vector<double> values = rule.parameters;
-  while (values.size() < parameters.size() && parameters[values.size()].default_value)
-    values.push_back(*parameters[values.size()].default_value);
-  if (values.size() != parameters.size())
-    throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
-                                 rule.parameters.size(), rule.law, parameters.size()));
-  return values;
+/// Whether the bonds of a rule are in the group of its law (a contact bond), not beside it.
+bool bond_is_law(const model::ContactRule& rule) {
+  bool result = false;
+  for_each_type(contact::BondTypes{}, [&](auto tag) {
+    using Bond = typename decltype(tag)::type;
+    if (Bond::name == rule.bond->kind) result = !Bond::additive;
+  });
+  return result;
 }
 
 template <class Kinematics>
 AnyGroup new_group(const model::ContactRule& rule, std::int32_t index) {
   std::optional<AnyGroup> group;
+  if constexpr (std::is_same_v<Kinematics, contact::BallBall>)
+    if (rule.bond && bond_is_law(rule)) return new_bond_group(rule, index);
   for_each_type(contact::LawTypes{}, [&](auto tag) {
     using Law = typename decltype(tag)::type;
     if (group || Law::name != rule.law) return;
-    const std::vector<double> values = completed(rule, index, Law::parameters);
+    const std::vector<double> values = law_values(rule, index, Law::parameters);
     if (Law::serves(values)) group = ContactGroup<Kinematics, Law>{Law::from_values(values), index, {}, {}};
   });
   if (!group) throw InputError(fmt::format("contacts[{}]: there is no law \"{}\"", index, rule.law));
@@ -357,6 +358,17 @@ void sort_contacts(Group& group) {
 
 }  // namespace
 
+std::vector<double> law_values(const model::ContactRule& rule, std::int32_t index,
+                               std::span<const contact::ParameterDescription> parameters) {
+  std::vector<double> values = rule.parameters;
+  while (values.size() < parameters.size() && parameters[values.size()].default_value)
+    values.push_back(*parameters[values.size()].default_value);
+  if (values.size() != parameters.size())
+    throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
+                                 rule.parameters.size(), rule.law, parameters.size()));
+  return values;
+}
+
 AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, std::int32_t index) {
   std::optional<AnyGroup> group;
   for_each_type(contact::KinematicsTypes{}, [&](auto tag) {
@@ -369,10 +381,13 @@ AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, 
 
 bool needs_rotation(const model::Scene& scene) {
   bool turns = false;
-  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
-    if (scene.contacts[r].law == "none") continue;
-    const AnyGroup group = new_group<contact::BallBall>(scene.contacts[r], static_cast<std::int32_t>(r));
+  const auto ask = [&](const AnyGroup& group) {
     turns = turns || std::visit([](const auto& g) { return g.law.needs_rotation(); }, group);
+  };
+  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
+    const model::ContactRule& rule = scene.contacts[r];
+    if (rule.bond) ask(new_bond_group(rule, static_cast<std::int32_t>(r)));
+    if (rule.law != "none") ask(new_group<contact::BallBall>(rule, static_cast<std::int32_t>(r)));
   }
   return turns;
 }
@@ -388,6 +403,7 @@ void list_contacts(Model& model, const model::Scene& scene, double reach, NewCon
                                 touching);
   list_kind<contact::BallFacet>(ball_facet_pairs(scene, model, before, reach), scene, before, model,
                                 touching_only, touching);
+  carry_bonds(before, model);
 }
 
 void begin_list(State& state) {

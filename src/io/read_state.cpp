@@ -76,10 +76,14 @@ void read_bodies(const h5::File& hdf5, assembly::State& state) {
   });
   model::Bodies& bodies = state.model.bodies;
   if (hdf5.has(layout::spin)) bodies.spin = hdf5.read<Vec3>(layout::spin, count);
+  if (hdf5.has(layout::orientation)) bodies.orientation = hdf5.read<Quat>(layout::orientation, count);
   if (hdf5.has(layout::moment)) state.moment = hdf5.read<Vec3>(layout::moment, count);
   for (std::size_t i = 0; i < count; ++i) {
     if (!finite(bodies.position[i]))
       throw h5::Error(fmt::format("the position of ball {} is not finite", bodies.identity[i]));
+    // Written so that not-a-number fails too. Rounding leaves some ulps.
+    if (!bodies.orientation.empty() && !(std::abs(bodies.orientation[i].squaredNorm() - 1) < 1e-12))
+      throw h5::Error(fmt::format("the orientation of ball {} is no unit quaternion", bodies.identity[i]));
     if (!(bodies.radius[i] > 0) || !std::isfinite(bodies.radius[i]))
       throw h5::Error(
           fmt::format("the radius of ball {} is {} m, not positive", bodies.identity[i], bodies.radius[i]));
@@ -124,7 +128,7 @@ void read_walls(const h5::File& hdf5, const fs::path& file, assembly::State& sta
                                index[k] + 1));
     const double* q = &orientation[4 * k];
     model.wall_poses[static_cast<std::size_t>(found - model.wall_motions.begin())] = {
-        centre[k], Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+        centre[k], Eigen::Quaterniond(q[3], q[0], q[1], q[2])};
   }
   state.list.wall_way = hdf5.number(layout::list, "wall_way");
   state.list.wall_lever = hdf5.read<double>(layout::list_wall_lever, hdf5.rows(layout::list_wall_lever));
@@ -142,6 +146,17 @@ void refuse_changes(const model::Scene& stored, const model::Scene& now, const f
       refuse(file, fmt::format("materials[{}].density: {} kg/m3; the balls of a state have their masses from "
                                "{} kg/m3 and keep them; leave it out, or start from the scene",
                                k, now.materials[k].density, stored.materials[k].density));
+  for (std::size_t r = 0; r < std::min(now.contacts.size(), stored.contacts.size()); ++r) {
+    const auto kind = [&](const model::Scene& scene) {
+      const auto& bond = scene.contacts[r].bond;
+      return bond ? bond->kind : std::string("none");
+    };
+    if (kind(now) != kind(stored))
+      refuse(file,
+             fmt::format("contacts[{}].bond: {}; the bonds of a state are those it was started with ({}); "
+                         "keep the kind, or start from the scene",
+                         now.contacts[r].entry, kind(now), kind(stored)));
+  }
   if (now.walls.size() != stored.walls.size())
     refuse(file, fmt::format("walls: {} planes; the state has {}, and its contacts name them by number; keep "
                              "their number and their order",

@@ -10,7 +10,7 @@ namespace eigengrain::io {
 
 inline constexpr Range positive_range{.low = 0, .low_allowed = false};
 
-/// Gravity, materials and the laws between them, but the parameters of the laws.
+/// Gravity, materials and the laws between them, but the parameters of the laws and bonds.
 std::vector<KeyDescription> contact_keys();
 
 /// Balls, from files, one by one or made.

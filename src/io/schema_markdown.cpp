@@ -79,11 +79,13 @@ std::string table_of_laws() {
   return text;
 }
 
-std::string laws_markdown() {
-  std::string text = table_of_laws();
-  for (const contact::LawDescription& law : contact::law_descriptions()) {
-    text += fmt::format("\n### `law: {}`\n\n{}\n\n{}", law.name, law.description, table_head);
-    for (const KeyDescription* key : section_keys("contacts[]", law.name))
+/// word  by which a scene asks for one of them; section: where its parameters stand
+std::string laws_markdown(std::string_view word, const std::vector<contact::LawDescription>& laws,
+                          std::string_view section) {
+  std::string text;
+  for (const contact::LawDescription& law : laws) {
+    text += fmt::format("\n### `{}: {}`\n\n{}\n\n{}", word, law.name, law.description, table_head);
+    for (const KeyDescription* key : section_keys(section, law.name))
       if (!key->law.empty()) text += table_row(*key, key->name());
   }
   return text;
@@ -112,7 +114,13 @@ at once. `--set key=value` on the command line acts as if the file said so: `--s
   text +=
       "\n## Contact laws\n\nThe parameters stand beside `law`, in the same entry of `contacts`; "
       "those in brackets have defaults.\n";
-  text += laws_markdown();
+  text += table_of_laws();
+  text += laws_markdown("law", contact::law_descriptions(), "contacts[]");
+  text +=
+      "\n## Bonds\n\nThe parameters stand beside `kind`, in the section `bond` of an entry of `contacts`. "
+      "Balls "
+      "only are bonded, not walls.\n";
+  text += laws_markdown("kind", contact::bond_descriptions(), "contacts[].bond");
   text += "\n## Units\n\n";
   text +=
       "A plain number is in SI units. A quantity may carry its unit instead: `5 mm`, `48 GPa`, `2.5 g/cm3`,\n"

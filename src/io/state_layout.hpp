@@ -21,6 +21,7 @@ inline const std::string settings = "/settings";
 inline const std::string bodies = "/bodies";
 inline const std::string position = "/bodies/position";
 inline const std::string spin = "/bodies/spin";
+inline const std::string orientation = "/bodies/orientation";
 inline const std::string moment = "/bodies/moment";
 inline const std::string contacts = "/contacts";
 inline const std::string list = "/neighbour_list";

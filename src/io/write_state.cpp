@@ -28,7 +28,8 @@ constexpr std::string_view compiler = "GCC " __VERSION__;
 
 /// Bytes that the file will take at most: its numbers, and room for HDF5's own structures.
 std::size_t largest_size(const assembly::State& state) {
-  constexpr std::size_t body = sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + 8;
+  constexpr std::size_t body =
+      sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + sizeof(Quat) + 8;
   std::size_t size = (1U << 20U) + state.settings.document.size() + body * state.model.bodies.position.size();
   state.model.contacts.for_each_group([&](const auto& group) {
     size += (1U << 14U) + group.pairs.size() * (sizeof(contact::Pair) + sizeof(group.states[0]));
@@ -50,6 +51,8 @@ void write_bodies(const assembly::State& state, h5::File& file) {
     file.write(path, column);
   });
   if (!state.model.bodies.spin.empty()) file.write(layout::spin, state.model.bodies.spin);
+  if (!state.model.bodies.orientation.empty())
+    file.write(layout::orientation, state.model.bodies.orientation);
   if (!state.moment.empty()) file.write(layout::moment, state.moment);
 }
 
@@ -123,7 +126,7 @@ void write_walls(const assembly::State& state, h5::File& file) {
     index.push_back(motions[m].wall);
     centre.push_back(pose.centre);
     const Eigen::Quaterniond& q = pose.orientation;
-    orientation.insert(orientation.end(), {q.w(), q.x(), q.y(), q.z()});
+    orientation.insert(orientation.end(), {q.x(), q.y(), q.z(), q.w()});
   }
   file.add_group(layout::walls);
   file.write(layout::wall_index, index);

@@ -3,8 +3,11 @@
 #include "eigengrain/assembly/acting.hpp"
 #include "eigengrain/base/adjacency.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 namespace eigengrain::measures {
 namespace {
@@ -17,6 +20,8 @@ Vec3 across(const Vec3& v, const Vec3& n) {
 /// more.
 template <class Law, class State>
 bool slides(const Law& law, const contact::ContactMotion& motion, const State& state) {
+  if constexpr (contact::BondLaw<Law>)
+    if (state.bonded()) return false;
   State discarded;
   const Vec3 force = law.evaluate(motion, state, discarded).force;
   constexpr double probe = 1e-6;  // of the shear force
@@ -29,22 +34,63 @@ bool slides(const Law& law, const contact::ContactMotion& motion, const State& s
   return raised - shear < 0.5 * probe * shear;
 }
 
+/// Bonds that add to another law on the same pair.
+template <class Law>
+constexpr bool beside_law() {
+  if constexpr (contact::BondLaw<Law>)
+    return Law::additive;
+  else
+    return false;
+}
+template <class Law>
+inline constexpr bool is_beside_law = beside_law<Law>();
+
+/// Where a pair of bodies is among the contacts.
+struct Place {
+  contact::Pair pair;
+  std::size_t index;
+};
+bool precedes(const Place& left, const Place& right) {
+  return std::tie(left.pair.a, left.pair.b, left.pair.image) <
+         std::tie(right.pair.a, right.pair.b, right.pair.image);
+}
+
 }  // namespace
 
 std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
   std::vector<ActingContact> result;
-  assembly::for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
-    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+  std::vector<Place> between_bodies;
+  std::vector<std::pair<contact::Pair, ActingContact>> beside;
+  const contact::Placement placement = model.placement();
+  assembly::for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
+    using Group = std::decay_t<decltype(group)>;
+    using Kinematics = typename Group::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
-    ActingContact& found = result.emplace_back();
+    ActingContact found;
     found.a = pair.a;
     found.normal = geometry.normal;
-    found.force = contact::force_now(group.law, geometry, group.states[c]).force;
-    found.slides = slides(group.law, contact::at_rest(geometry), group.states[c]);
+    found.force = contact::force_now(group.law, placement, pair, geometry, group.states[c]).force;
     found.b = Kinematics::second_is_body ? pair.b : ActingContact::wall;
     found.branch = geometry.lever_a;
     if constexpr (Kinematics::second_is_body) found.branch -= geometry.lever_b;
+    if constexpr (is_beside_law<typename Group::LawType>) {
+      beside.emplace_back(pair, found);
+    } else {
+      found.slides = slides(group.law, contact::at_rest(geometry), group.states[c]);
+      if constexpr (Kinematics::second_is_body) between_bodies.push_back({pair, result.size()});
+      result.push_back(found);
+    }
   });
+  if (beside.empty()) return result;
+  std::sort(between_bodies.begin(), between_bodies.end(), precedes);
+  for (const auto& [pair, bond] : beside) {
+    const Place wanted{pair, 0};
+    const auto same = std::lower_bound(between_bodies.begin(), between_bodies.end(), wanted, precedes);
+    if (same != between_bodies.end() && !precedes(wanted, *same))
+      result[same->index].force += bond.force;
+    else
+      result.push_back(bond);
+  }
   return result;
 }
 

@@ -34,10 +34,11 @@ Mat3 mean_stress(const Window& window, const assembly::Model& model,
 
 std::vector<Mat3> body_stresses(const assembly::Model& model) {
   std::vector<Mat3> stress(model.bodies.position.size(), Mat3::Zero());
-  assembly::for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
+  const contact::Placement placement = model.placement();
+  assembly::for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
-    const Vec3 force = contact::force_now(group.law, geometry, group.states[c]).force;
+    const Vec3 force = contact::force_now(group.law, placement, pair, geometry, group.states[c]).force;
     stress[pair.a] -= force * geometry.lever_a.transpose();
     if constexpr (Kinematics::second_is_body) stress[pair.b] += force * geometry.lever_b.transpose();
   });

@@ -47,7 +47,8 @@ Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
           .material = gather(bodies.material, order),
           .fixed = gather(bodies.fixed, order),
           .velocity = gather(bodies.velocity, order),
-          .spin = gather(bodies.spin, order)};
+          .spin = gather(bodies.spin, order),
+          .orientation = gather(bodies.orientation, order)};
 }
 
 void sort_along_curve(Bodies& bodies) {

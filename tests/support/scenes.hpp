@@ -63,6 +63,17 @@ class SceneBuilder {
     b.spin.back() = spin;
     return *this;
   }
+  /// Bonds of the scene's one contact rule.
+  SceneBuilder& bonded(model::BondRule bond) {
+    scene_.contacts.back().bond = std::move(bond);
+    return *this;
+  }
+  /// No law between balls, so that bonds are alone.
+  SceneBuilder& without_law() {
+    scene_.contacts.back().law = "none";
+    scene_.contacts.back().parameters.clear();
+    return *this;
+  }
   SceneBuilder& gravity(const Vec3& g) {
     scene_.gravity = g;
     return *this;

@@ -100,6 +100,15 @@ std::vector<std::string> scenes_with_room() {
     scenes.push_back(materials + ball +
                      fmt::format("contacts: [{{between: [any, any], law: {}{}}}]\n", law.name, needed));
   }
+  for (const contact::LawDescription& bond : contact::bond_descriptions()) {
+    std::string needed;
+    for (const KeyDescription* key : section_keys("contacts[].bond", bond.name))
+      if (key->required && !key->law.empty()) needed += fmt::format(", {}: {}", key->name(), key->example);
+    scenes.push_back(
+        materials + ball +
+        fmt::format("contacts: [{{between: [any, any], law: linear, kn: 1, bond: {{kind: {}{}}}}}]\n",
+                    bond.name, needed));
+  }
   return scenes;
 }
 

@@ -45,6 +45,15 @@ class StateDamage : public testing::Test {
   std::string whole_;
 };
 
+TEST_F(StateDamage, OrientationsThatAreNoRotations) {
+  state_.model.bodies.orientation.assign(state_.model.bodies.position.size(), Quat::Identity());
+  write_state(state_, file_);
+  whole_ = contents(file_);
+  EXPECT_EQ(after([](hid_t) {}), "");
+  EXPECT_THAT(with_value("/bodies/orientation", H5T_NATIVE_DOUBLE, 3, 0.5),
+              HasSubstr("is no unit quaternion"));
+}
+
 TEST_F(StateDamage, WhatIsNoState) {
   EXPECT_THAT(refusal(folder_.path() / "stat.h5"),
               AllOf(HasSubstr("there is no file"), HasSubstr("did you mean \"state.h5\"")));

@@ -32,9 +32,16 @@ struct Model {
   }
 
   /// The sides of contacts with the bodies where they are, or at trial positions [bodies].
-  contact::Placement placement() const { return placement(bodies.position); }
-  contact::Placement placement(std::span<const Vec3> position) const {
-    return {position, bodies.radius, walls, cell, bodies.mass, {}, &facets, surface_places, {}};
+  contact::Placement placement() const { return placement(bodies.position, bodies.orientation); }
+  contact::Placement placement(std::span<const Vec3> position, std::span<const Quat> orientation) const {
+    return {.position = position,
+            .radius = bodies.radius,
+            .walls = walls,
+            .cell = cell,
+            .mass = bodies.mass,
+            .facets = &facets,
+            .surfaces = surface_places,
+            .orientation = orientation};
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/contact/bonds/bond.hpp"
 #include "eigengrain/contact/element.hpp"
 
 #include <concepts>
@@ -33,6 +34,9 @@ void for_each_element(const Model& model, Listed which, const Visit& visit) {
       // Of the facets near a ball only those that it can touch together, now.
       if (std::is_same_v<Kinematics, contact::BallFacet> && !group.pairs[c].is_contact()) continue;
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
+      // A bond beside a law that broke never acts again.
+      if constexpr (contact::BondLaw<typename std::decay_t<decltype(group)>::LawType>)
+        if (group.law.additive && !group.states[c].bonded()) continue;
       contact::ContactMotion motion = contact::at_rest(geometry);
       if (!group.law.acts(motion, group.states[c])) {
         if (which == Listed::acting) continue;

@@ -22,17 +22,23 @@ concept TangentSink = requires(S& sink, std::int32_t body, const Mat12& k) {
 /// state and up to the size of the increment over the radius elsewhere. Nothing is stored in the contacts.
 template <TangentSink Sink>
 void assemble_tangent(const Model& model, const Trial& trial, Sink& sink) {
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = model.placement(trial.position, trial.orientation);
   for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
-    const contact::ContactMotion motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
-    typename Group::State discarded;
-    const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
-    sink.add(pair.a, Kinematics::second_is_body ? pair.b : contact::no_body,
-             contact::consistent_tangent(geometry, Kinematics::curvature(placement, pair, geometry), force,
-                                         group.law.tangent(motion, group.states[c])));
+    const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+    const auto tangent = group.law.tangent(motion, group.states[c]);
+    const std::int32_t second = Kinematics::second_is_body ? pair.b : contact::no_body;
+    if constexpr (contact::in_total_form<typename Group::LawType>) {
+      sink.add(pair.a, second, tangent);
+    } else {
+      typename Group::State discarded;
+      const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
+      sink.add(pair.a, second,
+               contact::consistent_tangent(geometry, Kinematics::curvature(placement, pair, geometry), force,
+                                           tangent));
+    }
   });
 }
 

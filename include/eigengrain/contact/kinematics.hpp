@@ -54,6 +54,7 @@ struct Placement {
   const model::Facets* facets = nullptr;  ///< of all surfaces
   std::span<const SurfacePlace> surfaces{};
   std::span<const SurfacePlace> middle_surfaces{};  ///< in the middle of the step; empty where none moves
+  std::span<const Quat> orientation{};  ///< [bodies] or empty; a trial orientation where position is one
 };
 
 /// Side a is a ball, side b another ball (or an image of the same one).
@@ -210,12 +211,23 @@ ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, cons
   return motion;
 }
 
+/// The pose of a contact between two bodies that have orientations.
+inline ContactPose pose_of(const Placement& placement, const Pair& pair, const ContactGeometry& geometry) {
+  return {.lever_a = geometry.lever_a,
+          .lever_b = geometry.lever_b,
+          .orientation_a = placement.orientation[static_cast<std::size_t>(pair.a)],
+          .orientation_b = placement.orientation[static_cast<std::size_t>(pair.b)]};
+}
+
 /// The motion of a contact as its law wants it.
 template <class Kinematics, class Law>
-ContactMotion motion_for(const Law& law, const Placement& placement, const Pair& pair,
+MotionOf<Law> motion_for(const Law& law, const Placement& placement, const Pair& pair,
                          const ContactGeometry& geometry, const SideMotion& a, const SideMotion& b) {
-  return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
-                        : contact_motion(geometry, a, b);
+  if constexpr (in_total_form<Law>)
+    return pose_of(placement, pair, geometry);
+  else
+    return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
+                          : contact_motion(geometry, a, b);
 }
 
 /// m_1 m_2/(m_1 + m_2) of the sides, at a wall the ball's mass, kg.
@@ -250,12 +262,28 @@ inline ContactMotion at_rest(const ContactGeometry& geometry) {
   return contact_motion(geometry, {}, {});
 }
 
-/// The force of a contact as it stands: that of its springs, and that of its dashpots in the step that led to
-/// its state.
+/// The same as the law wants it.
 template <class Law>
-ContactForce force_now(const Law& law, const ContactGeometry& geometry, const typename Law::State& state) {
+MotionOf<Law> at_rest_for(const Placement& placement, const Pair& pair, const ContactGeometry& geometry) {
+  if constexpr (in_total_form<Law>)
+    return pose_of(placement, pair, geometry);
+  else
+    return at_rest(geometry);
+}
+
+/// The force of the springs of a contact as it stands.
+template <class Law>
+ContactForce spring_force(const Law& law, const Placement& placement, const Pair& pair,
+                          const ContactGeometry& geometry, const typename Law::State& state) {
   typename Law::State discarded;
-  ContactForce force = law.evaluate(at_rest(geometry), state, discarded);
+  return law.evaluate(at_rest_for<Law>(placement, pair, geometry), state, discarded);
+}
+
+/// The same with that of its dashpots in the step that led to its state.
+template <class Law>
+ContactForce force_now(const Law& law, const Placement& placement, const Pair& pair,
+                       const ContactGeometry& geometry, const typename Law::State& state) {
+  ContactForce force = spring_force(law, placement, pair, geometry, state);
   if constexpr (asks_rate<Law>) force.force += state.viscous;
   return force;
 }

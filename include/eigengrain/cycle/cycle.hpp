@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
+#include <vector>
 
 /// The explicit cycle: leapfrog (PFC3D eqs. 1.25-1.27) with local damping (eq. 1.47).
 namespace eigengrain::cycle {
@@ -26,10 +28,11 @@ assembly::State start(const model::Scene& scene);
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
+///   orientation         q <- exp(v₊ Δt of the spin) q, where the scene has orientations
 ///   walls               by the velocity that is given for the middle of the step, servo walls by their load
-///   at t contacts            the list, where a body or wall has moved by half the skin; forces from the new
-///   positions,
-///                       the increments v₊ Δt and the old history, which is committed at once
+///                       at t
+///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
+///                       positions, the increments v₊ Δt and the old history, which is committed at once
 ///
 /// A state that starts has Δt_old = 0: its velocity v₀ at t = 0 becomes v₀ + ½Δt a₀ at the half step, which
 /// keeps the scheme at second order. The same program gives the same bits on any number of threads, and from
@@ -45,6 +48,8 @@ class Cycle {
   }
 
   const assembly::State& state() const { return state_; }
+  /// Bonds that broke since this was last asked, in their order; the state forgets them.
+  std::vector<assembly::BondBreak> take_breaks() { return std::exchange(state_.breaks, {}); }
   /// The state, moved out; the cycle is over.
   assembly::State release() { return std::move(state_); }
 

@@ -21,7 +21,8 @@ struct ActingContact {
 };
 
 /// The contacts that act, in the order of the groups. Whether one slides is asked of its law: more relative
-/// displacement in the direction of the shear force does not (by half) raise the force as k_s would.
+/// displacement in the direction of the shear force does not (by half) raise the force as k_s would. A bond
+/// beside a contact that acts adds its force to it; one over a gap is a contact of its own, at the end.
 std::vector<ActingContact> acting_contacts(const assembly::Model& model);
 
 /// The least number of contacts that can hold a body: 2 where some contact has shear stiffness (Thornton,

@@ -45,8 +45,9 @@ struct Bodies {
   std::vector<double> inertia;         ///< about any axis through the centre (spheres), kg m²
   std::vector<std::int32_t> material;  ///< index into Scene::materials
   std::vector<FixedComponents> fixed;
-  std::vector<Vec3> velocity;  ///< m/s; empty: all at rest
-  std::vector<Vec3> spin;      ///< angular velocity, rad/s; empty: nothing turns
+  std::vector<Vec3> velocity;     ///< m/s; empty: all at rest
+  std::vector<Vec3> spin;         ///< angular velocity, rad/s; empty: nothing turns
+  std::vector<Quat> orientation;  ///< from the body's frame to space, unit; empty: nothing asks for it
 
   std::int32_t size() const { return static_cast<std::int32_t>(position.size()); }
 };

@@ -15,6 +15,13 @@
 /// A scene is data: what the user asked for, in SI units, checked but not yet built.
 namespace eigengrain::model {
 
+/// Bonds that are made between the balls of a contact rule when a scene starts.
+struct BondRule {
+  std::string kind;                ///< a name of the table of bonds (contact/bonds.hpp)
+  std::vector<double> parameters;  ///< in the order of the kind's own description; flags as 0 or 1
+  double gap = 0;                  ///< surfaces that are no more than this apart are bonded, m
+};
+
 /// The law between two materials. An index of any_material matches every material.
 struct ContactRule {
   static constexpr std::int32_t any_material = -1;
@@ -25,6 +32,7 @@ struct ContactRule {
   /// In the order of the law's own description; flags as 0 or 1. Those at the end that have defaults may be
   /// left out.
   std::vector<double> parameters;
+  std::optional<BondRule> bond{};
   std::int32_t entry = 0;  ///< of the scene file's `contacts`, for reports
 
   bool matches(std::int32_t a, std::int32_t b) const {
