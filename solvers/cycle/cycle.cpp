@@ -5,6 +5,9 @@
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/contact/orientation.hpp"
 
+#include "clump_motion.hpp"
+#include "kick.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,20 +28,6 @@ constexpr double skin_of_radius = 0.05;
 
 double mean_radius(const model::Bodies& bodies) {
   return std::accumulate(bodies.radius.begin(), bodies.radius.end(), 0.0) / bodies.size();
-}
-
-/// Changes the free components of a velocity by the damped force of its body.
-void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, double damping,
-          std::uint8_t fixed) {
-  for (int k = 0; k < 3; ++k) {
-    if (((fixed >> k) & 1) != 0) continue;
-    double f = force[k];
-    if (velocity[k] > 0)
-      f -= damping * std::abs(f);
-    else if (velocity[k] < 0)
-      f += damping * std::abs(f);
-    velocity[k] += duration * f / inertia;
-  }
 }
 
 /// A step chosen anew is taken where it is shorter or longer by more than this: a step that changes with
@@ -79,17 +68,21 @@ double Cycle::move(double duration, double dt) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
   const double damping = state_.model.local_damping;
+  const bool clumps = !bodies.clumps.empty();
+  if (clumps) move_clumps(state_, duration, dt);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
   for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     double way = 0;
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const model::FixedComponents fixed = bodies.fixed[i];
-      const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
-      kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation());
-      bodies.position[i] += dt * bodies.velocity[i];
-      if (state_.turns())
-        kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation());
+      if (!clumps || bodies.clumps.of(static_cast<std::int32_t>(i)) == model::Clumps::none) {
+        const model::FixedComponents fixed = bodies.fixed[i];
+        const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
+        kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation());
+        bodies.position[i] += dt * bodies.velocity[i];
+        if (state_.turns())
+          kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation());
+      }
       const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;

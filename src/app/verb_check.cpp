@@ -83,6 +83,7 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
     parts.emplace_back("motion of walls");
   if (scene.gravity.isZero(0)) parts.emplace_back("gravity");
   if (scene.local_damping == 0) parts.emplace_back("damping");
+  if (model.bodies.clumps.empty()) parts.emplace_back("clumps");
   return parts;
 }
 
@@ -101,6 +102,7 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
     parts.emplace_back("translation");
   if (!model.wall_motions.empty()) parts.emplace_back("motion of walls");
   if (unknowns.rotations() > 0) parts.emplace_back("rotation");
+  if (!model.bodies.clumps.empty()) parts.emplace_back("motion of clumps");
   if (!model.bodies.orientation.empty()) parts.emplace_back("orientation");
   return parts;
 }
@@ -163,6 +165,7 @@ ordered_json to_json(const Report& report) {
                       {"bonds", g.bonds},
                       {"history_bytes", g.history_bytes}});
   return {{"bodies", report.model.bodies.size()},
+          {"clumps", report.model.bodies.clumps.size()},
           {"walls", report.model.wall_count()},
           {"contacts", report.system.elements.size()},
           {"bonds", assembly::count_bonds(report.model)},
@@ -186,6 +189,9 @@ void print(const Report& report) {
   fmt::print("{} is in order. The model will consist of\n", report.scene.name);
   fmt::print("  bodies      {}, {}\n", counted(report.model.bodies.size(), "ball", "balls"),
              radii_text(report.model.bodies));
+  if (const model::Clumps& clumps = report.model.bodies.clumps; !clumps.empty())
+    fmt::print("  clumps      {}, of {} of these balls\n", counted(clumps.size(), "clump", "clumps"),
+               grouped(static_cast<std::int64_t>(clumps.member.size())));
   for (const std::string& wall : assembly::wall_names(report.model)) fmt::print("  wall        {}\n", wall);
   for (const GroupSummary& g : report.groups) {
     fmt::print(

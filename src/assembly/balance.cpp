@@ -1,6 +1,7 @@
 #include "eigengrain/assembly/balance.hpp"
 
 #include "eigengrain/assembly/acting.hpp"
+#include "eigengrain/assembly/clump_members.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,23 +49,38 @@ Survey survey(const Model& model) {
       ++result.touch[body].contacts;
       result.touch[body].rounding += k * k * rounding;
     };
-    add(pair.a);
+    const model::Clumps& clumps = model.bodies.clumps;
+    const std::int32_t first = clumps.owner(pair.a);
+    add(first);
     if constexpr (Kinematics::second_is_body)
-      if (pair.b != pair.a) add(pair.b);
+      if (const std::int32_t second = clumps.owner(pair.b); second != first) add(second);
   });
   return result;
 }
 
+/// The size that turns a moment into a force, m.
+double size_of(const model::Bodies& bodies, std::int32_t row) {
+  const std::int32_t clump = bodies.clumps.of(row);
+  return clump == model::Clumps::none ? bodies.radius[row] : bodies.clumps.radius[clump];
+}
+
 }  // namespace
 
-Balance balance_of(const Model& model, const BodyForces& contacts) {
+Balance balance_of(const Model& model, const BodyForces& of_balls) {
   const model::Bodies& bodies = model.bodies;
+  BodyForces gathered;
+  if (!bodies.clumps.empty()) {
+    gathered = of_balls;
+    gather_members(bodies, {}, gathered);
+  }
+  const BodyForces& contacts = bodies.clumps.empty() ? of_balls : gathered;
   const Survey found = survey(model);
   Balance result{.contacts = found.contacts};
   double floor = 0;
   for (std::size_t i = 0; i < found.touch.size(); ++i) {
+    const auto row = static_cast<std::int32_t>(i);
     const model::FixedComponents fixed = bodies.fixed[i];
-    if (fixed.all()) continue;
+    if (fixed.all() || bodies.clumps.owner(row) != row) continue;
     if (found.touch[i].contacts == 0) {
       if (!model::free_part(model.gravity, fixed.translation()).isZero(0)) ++result.unsupported;
       continue;
@@ -76,7 +92,7 @@ Balance balance_of(const Model& model, const BodyForces& contacts) {
     result.max = std::max(result.max, force);
     floor += std::sqrt(found.touch[i].rounding);
     if (contacts.moment.empty()) continue;
-    const double moment = model::free_part(contacts.moment[i], fixed.rotation()).norm() / bodies.radius[i];
+    const double moment = model::free_part(contacts.moment[i], fixed.rotation()).norm() / size_of(bodies, row);
     result.moment_mean += moment;
     result.moment_max = std::max(result.moment_max, moment);
   }

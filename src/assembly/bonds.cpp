@@ -60,6 +60,7 @@ std::vector<std::vector<NewBond>> pairs_to_bond(const Model& model, const model:
     const Pair pair{found.a, found.b, found.image};
     const auto a = static_cast<std::size_t>(pair.a);
     const auto b = static_cast<std::size_t>(pair.b);
+    if (bodies.clumps.same(pair.a, pair.b) && pair.image == model::Image{}) continue;
     const std::int32_t rule = scene.rule_for(bodies.material[a], bodies.material[b]);
     if (rule < 0) continue;
     const auto& bond = scene.contacts[static_cast<std::size_t>(rule)].bond;

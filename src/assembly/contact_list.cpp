@@ -93,6 +93,11 @@ class PairsByRule {
   std::vector<std::vector<Pair>> pairs_;
 };
 
+/// Balls of one clump never touch; but they may touch the clump's own image.
+bool within_clump(const model::Clumps& clumps, const search::CandidatePair& pair) {
+  return !clumps.empty() && clumps.same(pair.a, pair.b) && pair.image == model::Image{};
+}
+
 PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, double reach) {
   const model::Bodies& bodies = model.bodies;
   PairsByRule result(scene);
@@ -100,6 +105,7 @@ PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, doubl
        search::candidate_pairs(bodies.position, bodies.radius, model.cell, reach)) {
     const auto a = static_cast<std::size_t>(found.a);
     const auto b = static_cast<std::size_t>(found.b);
+    if (within_clump(bodies.clumps, found)) continue;
     if (bodies.position[b] + model.cell.shift(found.image) == bodies.position[a])
       throw InputError(fmt::format("balls {} and {} have the same centre ({}, {}, {}); move one of them",
                                    bodies.identity[a], bodies.identity[b], bodies.position[a].x(),
@@ -309,22 +315,33 @@ void list_kind(PairsByRule pairs, const model::Scene& scene, const contact::Cont
   }
 }
 
-/// Moves the centres into the cell, and the images of the contacts with them.
+/// Moves the centres into the cell, and the images of the contacts with them. A clump moves as a whole, with
+/// its own centre; balls of it may then lie beyond the cell.
 void wrap(Model& model) {
   const model::PeriodicCell& cell = model.cell;
   if (!cell.any()) return;
   constexpr double farthest = 1e9;  // cells
   std::vector<std::array<int, 3>> moved(model.bodies.position.size());
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    Vec3& x = model.bodies.position[i];
+  model::Bodies& bodies = model.bodies;
+  const std::vector<Vec3> centres = bodies.clumps.position;  // before they move
+  const auto move = [&](const Vec3& reference, Vec3& x, std::array<int, 3>& by) {
     for (int k = 0; k < 3; ++k) {
       if (!cell.periodic[k]) continue;
       // A centre that is not a number, or lost, stays: the search finds it and says so.
-      const double cells = std::floor((x[k] - cell.origin[k]) / cell.lengths[k]);
+      const double cells = std::floor((reference[k] - cell.origin[k]) / cell.lengths[k]);
       if (!(std::abs(cells) < farthest)) continue;
-      moved[i][k] = static_cast<int>(cells);
-      x[k] -= moved[i][k] * cell.lengths[k];
+      by[k] = static_cast<int>(cells);
+      x[k] -= by[k] * cell.lengths[k];
     }
+  };
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const std::int32_t clump = bodies.clumps.of(static_cast<std::int32_t>(i));
+    const Vec3 reference = clump == model::Clumps::none ? bodies.position[i] : centres[clump];
+    move(reference, bodies.position[i], moved[i]);
+  }
+  for (Vec3& centre : bodies.clumps.position) {
+    std::array<int, 3> by{};
+    move(Vec3(centre), centre, by);
   }
   model.contacts.for_each_group([&](auto& group) {
     if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body) {

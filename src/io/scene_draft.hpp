@@ -44,6 +44,8 @@ void read_materials(const Section& root, SceneDraft& draft);
 void read_periodic(const Section& root, SceneDraft& draft);
 void read_contacts(const Section& root, SceneDraft& draft);
 void read_balls(const Section& root, SceneDraft& draft);
+/// After read_balls.
+void read_clumps(const Section& root, SceneDraft& draft);
 void read_walls(const Section& root, SceneDraft& draft);
 void read_gravity(const Section& root, SceneDraft& draft);
 void read_damping(const Section& root, SceneDraft& draft);

@@ -16,6 +16,9 @@ std::vector<KeyDescription> contact_keys();
 /// Balls, from files, one by one or made.
 std::vector<KeyDescription> ball_keys();
 
+/// Rigid bodies of several balls.
+std::vector<KeyDescription> clump_keys();
+
 /// Walls and the periodic cell.
 std::vector<KeyDescription> wall_keys();
 

@@ -99,6 +99,17 @@ std::vector<std::int32_t> acting_contacts(const assembly::Model& model) {
   return count;
 }
 
+/// [rows] number of the clump of each ball, -1 for those of their own.
+std::vector<std::int64_t> clumps_of(const model::Clumps& clumps, const std::vector<std::int32_t>& rows) {
+  std::vector<std::int64_t> result;
+  result.reserve(rows.size());
+  for (const std::int32_t row : rows) {
+    const std::int32_t clump = clumps.of(row);
+    result.push_back(clump == model::Clumps::none ? -1 : clumps.identity[static_cast<std::size_t>(clump)]);
+  }
+  return result;
+}
+
 constexpr std::string_view frame_head =
     "<?xml version=\"1.0\"?>\n"
     "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
@@ -142,6 +153,8 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
   xml += "<PointData Scalars=\"radius\">\n";
   xml += column("radius", bodies.radius);
   xml += column("identity", bodies.identity);
+  if (!bodies.clumps.empty())
+    xml += arrays.add("clump", count, [&] { return clumps_of(bodies.clumps, rows); });
   if (!bodies.velocity.empty()) xml += column("velocity", bodies.velocity);
   if (!bodies.spin.empty()) xml += column("spin", bodies.spin);
   xml += column("force", state.force);

@@ -14,7 +14,13 @@ namespace eigengrain::io::layout {
 
 inline constexpr std::string_view format = "eigengrain state";
 /// Grows with every change after which an old reader would misunderstand a file.
-inline constexpr std::int64_t schema = 1;
+inline constexpr std::int64_t schema = 2;
+inline constexpr std::int64_t oldest_schema = 1;
+
+/// The least schema that says all of a state, so that older programs read what they understand: 2 with clumps.
+inline std::int64_t schema_of(const assembly::State& state) {
+  return state.model.bodies.clumps.empty() ? oldest_schema : schema;
+}
 
 inline const std::string root = "/";
 inline const std::string settings = "/settings";
@@ -23,6 +29,7 @@ inline const std::string position = "/bodies/position";
 inline const std::string spin = "/bodies/spin";
 inline const std::string orientation = "/bodies/orientation";
 inline const std::string moment = "/bodies/moment";
+inline const std::string clumps = "/clumps";
 inline const std::string contacts = "/contacts";
 inline const std::string list = "/neighbour_list";
 inline const std::string list_position = "/neighbour_list/position";
@@ -47,6 +54,24 @@ void for_each_column(State& state, const Visit& visit) {
   visit("/bodies/fixed", balls.fixed);
   visit("/bodies/velocity", balls.velocity);
   visit("/bodies/force", state.force);
+}
+
+/// The columns of the clumps, with as many rows as each has; only where there are clumps.
+template <class Clumps, class Visit>
+void for_each_clump_column(Clumps& all, const Visit& visit) {
+  visit("/clumps/identity", all.identity);
+  visit("/clumps/mass", all.mass);
+  visit("/clumps/volume", all.volume);
+  visit("/clumps/radius", all.radius);
+  visit("/clumps/inertia", all.inertia);
+  visit("/clumps/position", all.position);
+  visit("/clumps/orientation", all.orientation);
+  visit("/clumps/velocity", all.velocity);
+  visit("/clumps/angular_momentum", all.angular_momentum);
+  visit("/clumps/spin", all.spin);
+  visit("/clumps/starts", all.starts);
+  visit("/clumps/member", all.member);
+  visit("/clumps/place", all.place);
 }
 
 /// The numbers of the root.

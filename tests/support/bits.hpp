@@ -18,7 +18,7 @@ struct Threads {
   int before = threads();
 };
 
-/// All that moves in a state: balls, forces, shear, walls, surfaces, and what the near list was made for.
+/// All that moves in a state: balls, clumps, forces, shear, walls, surfaces, and what the near list was made for.
 inline std::string bits_of(const assembly::State& state) {
   std::string bits;
   const auto add = [&](const auto& column) {
@@ -27,6 +27,11 @@ inline std::string bits_of(const assembly::State& state) {
   add(state.model.bodies.position);
   add(state.model.bodies.velocity);
   add(state.model.bodies.spin);
+  add(state.model.bodies.clumps.position);
+  for (const Quat& q : state.model.bodies.clumps.orientation) add(q.coeffs());
+  add(state.model.bodies.clumps.velocity);
+  add(state.model.bodies.clumps.angular_momentum);
+  add(state.model.bodies.clumps.spin);
   add(state.force);
   add(state.moment);
   add(shears_of(state));

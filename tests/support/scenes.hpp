@@ -53,6 +53,11 @@ class SceneBuilder {
     if (!b.spin.empty()) b.spin.emplace_back(Vec3::Zero());
     return *this;
   }
+  /// A clump, behind all balls.
+  SceneBuilder& clump(const model::ClumpShape& shape, const model::ClumpStart& start) {
+    model::add_clump(scene_.bodies, shape, start);
+    return *this;
+  }
   /// Velocity and spin of the ball added last.
   SceneBuilder& moving(const Vec3& velocity, const Vec3& spin = Vec3::Zero()) {
     model::Bodies& b = scene_.bodies;

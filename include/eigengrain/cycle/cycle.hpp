@@ -28,6 +28,8 @@ assembly::State start(const model::Scene& scene);
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
+///   clumps              L₊ = L₋ + ½(Δt_old + Δt) M with damping along the principal axes, then the free
+///                       rotation with L₊ (cycle/free_rotation.hpp)
 ///   orientation         q <- exp(v₊ Δt of the spin) q, where the scene has orientations
 ///   walls               by the velocity that is given for the middle of the step, servo walls by their load
 ///                       at t
