@@ -26,9 +26,13 @@ Resultant resultant(const assembly::State& state, std::int32_t clump) {
   return sum;
 }
 
-/// The moment with its local damping, which acts along the principal axes.
-Vec3 damped_moment(const Vec3& moment, const Quat& orientation, const Vec3& momentum, double damping) {
+/// The moment with its local damping, which acts along the principal axes; where all axes are principal, along
+/// those of space, as that of a ball does.
+Vec3 damped_moment(const Vec3& moment, const Quat& axes, const Vec3& inertia, const Vec3& momentum,
+                   double damping) {
   if (damping == 0) return moment;  // the detour through the axes would cost digits
+  const bool round = inertia[0] == inertia[1] && inertia[1] == inertia[2];
+  const Quat orientation = round ? Quat(Quat::Identity()) : axes;
   Vec3 own = orientation.conjugate() * moment;
   const Vec3 turning = orientation.conjugate() * momentum;
   for (int k = 0; k < 3; ++k) own[k] = damped(own[k], turning[k], damping);
@@ -55,7 +59,7 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
     rotation.turn = contact::turned(Quat::Identity(), rotation.theta);
   } else {
     Vec3& momentum = clumps.angular_momentum[c];
-    momentum += duration * damped_moment(contacts.moment, clumps.orientation[c], momentum, damping);
+    momentum += duration * damped_moment(contacts.moment, clumps.orientation[c], clumps.inertia[c], momentum, damping);
     rotation = rotate_freely(clumps.orientation[c], momentum, clumps.inertia[c], dt);
     clumps.spin[c] = rotation.theta / dt;
   }

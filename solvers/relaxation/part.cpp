@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/base/assert.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -107,6 +108,7 @@ Movers movers_of(const State& state, double force) {
 }
 
 Part::Part(State& whole, std::span<const std::int32_t> movers) {
+  EIGENGRAIN_ASSERT(whole.model.bodies.clumps.empty());
   const double ring = mean_radius(whole.model.bodies, movers);
   room_ = room_of_ring * ring;
   assembly::renew_list(whole, ring);

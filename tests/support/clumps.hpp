@@ -47,6 +47,36 @@ inline Quat random_orientation(std::mt19937_64& random) {
   return Quat(random_rotation(random)).normalized();
 }
 
+/// Where a second clump is whose ball touches one of the first, along n from the first to the second, with an
+/// overlap of this part of their radii.
+inline model::ClumpStart beside(const model::ClumpShape& first, const model::ClumpStart& start,
+                                std::size_t ball_first, const model::ClumpShape& second, const Quat& orientation,
+                                std::size_t ball_second, const Vec3& n, double overlap = 1e-9) {
+  const double reach = (first.radius[ball_first] + second.radius[ball_second]) * (1 - overlap);
+  return {.position = start.position + start.orientation * first.place[ball_first] + reach * n -
+                      orientation * second.place[ball_second],
+          .orientation = orientation};
+}
+
+/// An odd shape and a dumbbell that touch in one place, off the axes of both, otherwise turned at random.
+inline SceneBuilder touching_pair(const Springs& springs, std::mt19937_64& random, double overlap = 1e-9) {
+  const model::ClumpShape first = odd_shape();
+  const model::ClumpShape second = dumbbell();
+  const model::ClumpStart start{.orientation = random_orientation(random)};
+  // Ball 1 sticks out; the dumbbell points away from it. Both are tilted by half a radian.
+  const Vec3 out = (start.orientation * first.place[1]).normalized();
+  const auto tilt = [&](const Vec3& v) {
+    const Vec3 axis = v.cross(random_vector(random)).normalized();
+    return Vec3(Eigen::AngleAxisd(0.5, axis) * v);
+  };
+  const Vec3 n = tilt(out);
+  const Quat orientation(Quat::FromTwoVectors(second.place[0], -tilt(n)));
+  SceneBuilder builder(springs);
+  builder.clump(first, start);
+  builder.clump(second, beside(first, start, 1, second, orientation.normalized(), 0, n, overlap));
+  return builder;
+}
+
 /// Forces and moments on the numbered unknowns after the displacement h x from the committed state, of clumps
 /// along their principal axes where they stand.
 inline Eigen::VectorXd forces_on_unknowns(const System& s, const Eigen::VectorXd& x, double h) {
