@@ -26,8 +26,8 @@ Resultant resultant(const assembly::State& state, std::int32_t clump) {
   return sum;
 }
 
-/// The moment with its local damping, which acts along the principal axes; where all axes are principal, along
-/// those of space, as that of a ball does.
+/// The moment with its local damping, which acts along the principal axes; where all axes are principal,
+/// along those of space, as that of a ball does.
 Vec3 damped_moment(const Vec3& moment, const Quat& axes, const Vec3& inertia, const Vec3& momentum,
                    double damping) {
   if (damping == 0) return moment;  // the detour through the axes would cost digits
@@ -59,12 +59,13 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
     rotation.turn = contact::turned(Quat::Identity(), rotation.theta);
   } else {
     Vec3& momentum = clumps.angular_momentum[c];
-    momentum += duration * damped_moment(contacts.moment, clumps.orientation[c], clumps.inertia[c], momentum, damping);
+    momentum += duration *
+                damped_moment(contacts.moment, clumps.orientation[c], clumps.inertia[c], momentum, damping);
     rotation = rotate_freely(clumps.orientation[c], momentum, clumps.inertia[c], dt);
     clumps.spin[c] = rotation.theta / dt;
   }
-  for (auto m = static_cast<std::size_t>(clumps.starts[c]); m < static_cast<std::size_t>(clumps.starts[c + 1]);
-       ++m) {
+  for (auto m = static_cast<std::size_t>(clumps.starts[c]);
+       m < static_cast<std::size_t>(clumps.starts[c + 1]); ++m) {
     const auto i = static_cast<std::size_t>(clumps.member[m]);
     const Vec3 lever = clumps.orientation[c] * clumps.place[m];
     bodies.velocity[i] = velocity + model::turned_by(rotation.turn, lever) / dt;

@@ -49,8 +49,8 @@ std::optional<Meeting> any_clump(const model::Bodies& bodies, std::span<const st
     const double mass = clumps.mass[clump];
     const double inertia = clumps.inertia[clump].minCoeff();
     if (!result)
-      result = Meeting{
-          .mass = mass, .heavy = mass, .inertia = inertia, .lever = 0, .radius = 0, .radial = false};
+      result =
+          Meeting{.mass = mass, .heavy = mass, .inertia = inertia, .lever = 0, .radius = 0, .radial = false};
     result->mass = std::min(result->mass, mass);
     result->heavy = std::max(result->heavy, mass);
     result->inertia = std::min(result->inertia, inertia);
@@ -109,9 +109,8 @@ void add(const Meeting& body, const model::ContactRule& rule, std::int32_t index
     result.bound = std::min({result.bound, step_of(2 * k.normal / mass, 2 * cn / mass, damping),
                              step_of(2 * (k.shear * across + turning_alone), 2 * cs * across, damping)});
   else  // force along n and across it turn the same axes
-    result.bound = std::min(
-        result.bound, step_of(2 * (std::max(k.normal, k.shear) * across + turning_alone),
-                              2 * std::max(cn, cs) * across, damping));
+    result.bound = std::min(result.bound, step_of(2 * (std::max(k.normal, k.shear) * across + turning_alone),
+                                                  2 * std::max(cn, cs) * across, damping));
 }
 
 }  // namespace
@@ -150,8 +149,7 @@ FirstContact first_contact(const assembly::State& state, std::span<const std::in
       const std::int32_t rule = settings.rule_for(a, b);
       if (rule < 0 || settings.contacts[rule].law == "none") continue;
       for (const auto& body : {ball, clump})
-        if (body)
-          add(*body, settings.contacts[rule], rule, approach, state.model.local_damping, result);
+        if (body) add(*body, settings.contacts[rule], rule, approach, state.model.local_damping, result);
     }
   }
   return result;

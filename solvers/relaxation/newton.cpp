@@ -127,8 +127,8 @@ class Equations {
     EIGENGRAIN_PETSC(VecGetArray(y, &step));
     for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block) {
       // A ball of a clump may go both ways of it.
-      const double room = clumps().of(system_.unknowns.body(block)) == model::Clumps::none ? whole_room
-                                                                                          : 0.5 * whole_room;
+      const double room =
+          clumps().of(system_.unknowns.body(block)) == model::Clumps::none ? whole_room : 0.5 * whole_room;
       const Eigen::Map<const Vec3> from(&at[3 * block]);
       Eigen::Map<Vec3> by(&step[3 * block]);
       const Vec3 to = from - by;  // SNES subtracts
@@ -235,7 +235,7 @@ class Equations {
   double reach_;         ///< of the list of contacts, m
   double longest_step_;  ///< of a body that nothing holds, m
   Vector scale_;
-  Vector mass_;  ///< of the unknowns: m and I/R²
+  Vector mass_;           ///< of the unknowns: m and I/R²
   Displacement moved_;    ///< of bodies: of a clump in the row of its holder
   Displacement carried_;  ///< of all balls, where there are clumps
   std::vector<Vec3> position_;

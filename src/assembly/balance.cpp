@@ -92,7 +92,8 @@ Balance balance_of(const Model& model, const BodyForces& of_balls) {
     result.max = std::max(result.max, force);
     floor += std::sqrt(found.touch[i].rounding);
     if (contacts.moment.empty()) continue;
-    const double moment = model::free_part(contacts.moment[i], fixed.rotation()).norm() / size_of(bodies, row);
+    const double moment =
+        model::free_part(contacts.moment[i], fixed.rotation()).norm() / size_of(bodies, row);
     result.moment_mean += moment;
     result.moment_max = std::max(result.moment_max, moment);
   }

@@ -1,8 +1,7 @@
 #include "eigengrain/assembly/energies.hpp"
 
-#include "eigengrain/assembly/forces.hpp"
-
 #include "eigengrain/assembly/clump_members.hpp"
+#include "eigengrain/assembly/forces.hpp"
 
 namespace eigengrain::assembly {
 namespace {

@@ -303,7 +303,8 @@ struct StiffnessProduct::Data {
   }
   /// Sums of a chunk from the axes of space to their own.
   void to_own_axes(std::int64_t chunk, double* sums) const {
-    const std::int64_t start = std::int64_t{layout.stride} * chunks[static_cast<std::size_t>(chunk)].first_body;
+    const std::int64_t start =
+        std::int64_t{layout.stride} * chunks[static_cast<std::size_t>(chunk)].first_body;
     for (const OwnAxes& own : axes[static_cast<std::size_t>(chunk)]) {
       Eigen::Map<Vec3> v(sums + (own.place - start));
       v = (own.axes.transpose() * v).eval();
@@ -324,9 +325,8 @@ StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, std::span<const Con
   const std::int32_t bodies = unknowns.bodies();
   const std::vector<Kind> kinds = kinds_of(elements);
   // Contacts with shear read rotations even where every body holds its own; clumps have them without.
-  const bool turns =
-      unknowns.rotations() > 0 ||
-      std::any_of(kinds.begin(), kinds.end(), [](Kind kind) { return kind != Kind::central; });
+  const bool turns = unknowns.rotations() > 0 ||
+                     std::any_of(kinds.begin(), kinds.end(), [](Kind kind) { return kind != Kind::central; });
   data_ = std::make_unique<Data>(layout_of(unknowns, turns, scale), bodies, empty_chunks(unknowns));
   EIGENGRAIN_ASSERT(size() == unknowns.size(), size(), unknowns.size());
   const Visits visits(unknowns, bodies, elements);

@@ -45,8 +45,7 @@ std::optional<Shape> read_shape(const Section& entry) {
     for (std::size_t j = 0; j < shape.at.size(); ++j) {
       const double room = shape.radius[j] - shape.radius[i] - (shape.at[i] - shape.at[j]).norm();
       if (i == j || room < 0 || (room == 0 && shape.radius[i] == shape.radius[j] && i < j)) continue;
-      sections[i].report(
-          fmt::format("lies within balls[{}], so it adds nothing to the shape; remove it", j));
+      sections[i].report(fmt::format("lies within balls[{}], so it adds nothing to the shape; remove it", j));
       return std::nullopt;
     }
   return shape;
@@ -96,13 +95,15 @@ std::optional<Properties> properties_of(const Section& entry, const Shape& balls
     result.centre = body.centre;
     result.axes = axes.orientation;
     result.shape.inertia = axes.inertia;
-    draft.scene.notes.push_back(fmt::format(
-        "{}: volume {:.6g} m3, mass {:.6g} kg, principal moments {:.6g}, {:.6g}, {:.6g} kg m2 of the union of "
-        "its balls, to {:.0e}",
-        entry.path(), body.volume, result.shape.mass, axes.inertia[0], axes.inertia[1], axes.inertia[2],
-        body.error));
+    draft.scene.notes.push_back(
+        fmt::format("{}: volume {:.6g} m3, mass {:.6g} kg, principal moments {:.6g}, {:.6g}, {:.6g} kg m2 of "
+                    "the union of "
+                    "its balls, to {:.0e}",
+                    entry.path(), body.volume, result.shape.mass, axes.inertia[0], axes.inertia[1],
+                    axes.inertia[2], body.error));
   }
-  for (const Vec3& at : balls.at) result.shape.place.emplace_back(result.axes.conjugate() * (at - result.centre));
+  for (const Vec3& at : balls.at)
+    result.shape.place.emplace_back(result.axes.conjugate() * (at - result.centre));
   return result;
 }
 
@@ -146,7 +147,8 @@ class Instances {
   static std::optional<model::FixedComponents> read_fixed_whole(const Section& section) {
     const model::FixedComponents fixed = read_fixed(section);
     if (fixed.rotation() == 0 || fixed.rotation() == 7) return fixed;
-    section.report("fix", "the rotation of a clump is fixed about all axes or about none; write wx, wy and wz");
+    section.report("fix",
+                   "the rotation of a clump is fixed about all axes or about none; write wx, wy and wz");
     return std::nullopt;
   }
 
@@ -168,9 +170,10 @@ void read_entry(const Section& entry, SceneDraft& draft) {
   const auto body = properties_of(entry, *shape, density > 0 ? density : 1.0, draft);
   if (!body) return;
   if (!std::isnormal(body->shape.inertia.minCoeff()) || !std::isnormal(body->shape.mass))
-    return entry.report(fmt::format("a mass of {} kg and moments down to {} kg m2 are no sizes for numbers; are "
-                                    "the units right?",
-                                    body->shape.mass, body->shape.inertia.minCoeff()));
+    return entry.report(
+        fmt::format("a mass of {} kg and moments down to {} kg m2 are no sizes for numbers; are "
+                    "the units right?",
+                    body->shape.mass, body->shape.inertia.minCoeff()));
   Instances instances(draft, material);
   for (const Section& section : sections) instances.add(section, *body);
 }

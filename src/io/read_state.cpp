@@ -110,13 +110,14 @@ void read_clumps(const h5::File& hdf5, assembly::State& state) {
   const std::size_t count = hdf5.rows("/clumps/identity");
   layout::for_each_clump_column(clumps, [&](const std::string& path, auto& column) {
     const bool of_balls = path == "/clumps/member" || path == "/clumps/place";
-    const std::size_t rows = of_balls                    ? hdf5.rows("/clumps/member")
+    const std::size_t rows = of_balls                   ? hdf5.rows("/clumps/member")
                              : path == "/clumps/starts" ? count + 1
                                                         : count;
     column = hdf5.read<typename std::decay_t<decltype(column)>::value_type>(path, rows);
   });
   if (!members_are_sound(clumps, bodies.size())) throw h5::Error("the balls of the clumps make no sense");
-  if (bodies.spin.empty() || state.moment.empty()) throw h5::Error("clumps, but balls without spin or moment");
+  if (bodies.spin.empty() || state.moment.empty())
+    throw h5::Error("clumps, but balls without spin or moment");
   for (std::size_t c = 0; c < count; ++c) {
     if (!finite(clumps.position[c]) || !(std::abs(clumps.orientation[c].squaredNorm() - 1) < 1e-12))
       throw h5::Error(fmt::format("clump {} has no place or no unit quaternion", c));

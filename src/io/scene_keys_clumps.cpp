@@ -10,8 +10,9 @@ std::vector<KeyDescription> clump_keys() {
        .kind = section_list,
        .example = "[{balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [5 mm, 0, 0], radius: 5 mm}], "
                   "material: grain, instances: [{position: [0.1, 0.1, 0.1]}]}]",
-       .description = "each entry is a sort of rigid body made of several balls; these are numbered behind all "
-                      "others, and never touch those of their own body"},
+       .description =
+           "each entry is a sort of rigid body made of several balls; these are numbered behind all "
+           "others, and never touch those of their own body"},
       {.path = "clumps[].balls",
        .kind = section_list,
        .required = true,
@@ -52,8 +53,9 @@ std::vector<KeyDescription> clump_keys() {
        .unit = "kg m2",
        .range = positive_range,
        .example = "[2e-8, 4e-8, 4e-8]",
-       .description = "moments about the centre, together with `mass` and `centre`; the axes of the frame are "
-                      "then the principal ones; absent: those of the union"},
+       .description =
+           "moments about the centre, together with `mass` and `centre`; the axes of the frame are "
+           "then the principal ones; absent: those of the union"},
       {.path = "clumps[].instances",
        .kind = section_list,
        .required = true,
@@ -93,7 +95,8 @@ std::vector<KeyDescription> clump_keys() {
        .fallback = "[]",
        .words = {"x", "y", "z", "wx", "wy", "wz", "all"},
        .example = "[x, y]",
-       .description = "components of the velocity that keep their value; of the angular velocity all or none"},
+       .description =
+           "components of the velocity that keep their value; of the angular velocity all or none"},
   };
 }
 

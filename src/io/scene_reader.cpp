@@ -81,8 +81,8 @@ void take_materials_of_balls(const Section& root, SceneDraft& draft,
                              std::span<const std::int32_t> material_of_ball) {
   for (const std::string_view key : {balls_key, clumps_key})
     if (root.has(key))
-      root.report(
-          key, fmt::format("a state has its {} already; leave the key out, or start from the scene", key));
+      root.report(key,
+                  fmt::format("a state has its {} already; leave the key out, or start from the scene", key));
   const auto count = static_cast<std::int32_t>(draft.scene.materials.size());
   const bool known = std::all_of(material_of_ball.begin(), material_of_ball.end(),
                                  [&](std::int32_t material) { return material >= 0 && material < count; });

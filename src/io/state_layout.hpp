@@ -17,7 +17,8 @@ inline constexpr std::string_view format = "eigengrain state";
 inline constexpr std::int64_t schema = 2;
 inline constexpr std::int64_t oldest_schema = 1;
 
-/// The least schema that says all of a state, so that older programs read what they understand: 2 with clumps.
+/// The least schema that says all of a state, so that older programs read what they understand: 2 with
+/// clumps.
 inline std::int64_t schema_of(const assembly::State& state) {
   return state.model.bodies.clumps.empty() ? oldest_schema : schema;
 }

@@ -52,7 +52,8 @@ TEST(ClumpEnergy, IsKeptInAnImpactOnAWall) {
     lost.push_back(most);
   }
   const double mass = dumbbell().mass;
-  EXPECT_LT(lost[0], 2 * 0.25 * 1e-6 * 1e4 / mass * 10);  // lighter at its ends: some times the bound of a ball
+  EXPECT_LT(lost[0],
+            2 * 0.25 * 1e-6 * 1e4 / mass * 10);  // lighter at its ends: some times the bound of a ball
   EXPECT_LT(lost[3], lost[0] / 16);  // at least of the order 4/3 in the mean of the phases; two are expected
 }
 
@@ -96,7 +97,8 @@ TEST(ClumpEnergy, IsConservedByALinearSystemOverManySteps) {
 TEST(ClumpEnergy, OfARestingClumpIsBalanced) {
   // A dumbbell lies on two floors' worth of contacts: after damping its resultants vanish.
   SceneBuilder builder({.kn = 1e4, .ks = 5e3, .tension = false, .friction = 0.5});
-  builder.clump(dumbbell(), {.position = {0, 0, 1.3}, .orientation = Quat(Eigen::AngleAxisd(0.2, Vec3::UnitY()))});
+  builder.clump(dumbbell(),
+                {.position = {0, 0, 1.3}, .orientation = Quat(Eigen::AngleAxisd(0.2, Vec3::UnitY()))});
   builder.plane(Vec3::Zero(), Vec3::UnitZ()).gravity({0, 0, -9.81}).damped(0.7);
   cycle::Cycle cycle = cycle_of(builder, 1e-3);
   EXPECT_EQ(assembly::balance_of(cycle.state()).unsupported, 1);  // one body, of two balls

@@ -69,8 +69,9 @@ Body tumbling() {
 }
 
 TEST(FreeRotation, OfASymmetricTopIsExact) {
-  // The axis of the top and the body about it: q(t) = exp(L t/I) q_0 exp(π_3 (1/I_3 - 1/I) t e_3). Each of the
-  // steps rounds the orientation by some 1e-16; after 10,000 that is 1e-14 of π_3, and times t = 3000 s the angle.
+  // The axis of the top and the body about it: q(t) = exp(L t/I) q_0 exp(π_3 (1/I_3 - 1/I) t e_3). Each of
+  // the steps rounds the orientation by some 1e-16; after 10,000 that is 1e-14 of π_3, and times t = 3000 s
+  // the angle.
   for (const double third : {0.4, 3.0}) {
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 inertia(1.3, 1.3, 1.3);

@@ -65,7 +65,8 @@ struct TopMode {
       const std::int32_t clump = bodies.clumps.of(body);
       const auto c = static_cast<std::size_t>(clump);
       if (!system.unknowns.is_rotation(block))
-        sum += mode.dot(bodies.mass[i] * (clump == model::Clumps::none ? bodies.velocity[i] : bodies.clumps.velocity[c]));
+        sum += mode.dot(bodies.mass[i] *
+                        (clump == model::Clumps::none ? bodies.velocity[i] : bodies.clumps.velocity[c]));
       else if (clump == model::Clumps::none)
         sum += mode.dot(bodies.inertia[i] * bodies.spin[i]);
       else
@@ -145,8 +146,7 @@ TEST(ClumpLimit, OfAClumpOnAWallIsItsClosedForm) {
 
 /// A rod of three balls.
 model::ClumpShape rod(double half_length, const Vec3& inertia_scale = Vec3::Ones()) {
-  model::ClumpShape shape =
-      union_shape({{-half_length, 0, 0}, {0, 0, 0}, {half_length, 0, 0}}, {1, 1, 1});
+  model::ClumpShape shape = union_shape({{-half_length, 0, 0}, {0, 0, 0}, {half_length, 0, 0}}, {1, 1, 1});
   shape.inertia = shape.inertia.cwiseProduct(inertia_scale);
   return shape;
 }
@@ -197,8 +197,8 @@ TEST(ClumpLimit, IsFarBelowTheEstimateForObliqueRods) {
   EXPECT_NEAR(estimate / mode.timestep(), worst, 1e-9);
   EXPECT_GT(worst, 1.4);
   EXPECT_LT(worst, std::sqrt(3.0));
-  std::printf("rods, half length %.3f R: estimate %.4f of the truth, with the safety of 0.8 still %.4f\n", length,
-              worst, 0.8 * worst);
+  std::printf("rods, half length %.3f R: estimate %.4f of the truth, with the safety of 0.8 still %.4f\n",
+              length, worst, 0.8 * worst);
   // The bound is safe, and for a pair of equals exact.
   EXPECT_LE(cycle::block_bound(system), mode.timestep());
   EXPECT_GT(cycle::block_bound(system), (1 - 1e-9) * mode.timestep());
@@ -233,8 +233,9 @@ TEST(ClumpPolicy, BoundOfTheFirstContactHoldsForAnyContact) {
     const Quat p = random_orientation(random);
     SceneBuilder builder({.kn = 1, .ks = 0.6, .tension = false, .friction = 0.5});
     builder.clump(shape, {.orientation = q});
-    builder.clump(shape, beside(shape, {.orientation = q}, static_cast<std::size_t>(k % 4), shape, p,
-                                static_cast<std::size_t>(k / 4 % 4), random_vector(random).normalized(), overlap));
+    builder.clump(shape,
+                  beside(shape, {.orientation = q}, static_cast<std::size_t>(k % 4), shape, p,
+                         static_cast<std::size_t>(k / 4 % 4), random_vector(random).normalized(), overlap));
     const System system(builder);
     if (system.elements.size() != 1) continue;
     least = std::min(least, TopMode(system).timestep());

@@ -47,7 +47,8 @@ struct Zone {
 };
 
 /// The union of the same balls along an axis, anywhere in space.
-void expect_revolution(const std::vector<double>& along, const std::vector<double>& radius, const Zone& zone) {
+void expect_revolution(const std::vector<double>& along, const std::vector<double>& radius,
+                       const Zone& zone) {
   std::mt19937_64 random(3);
   const double centre = zone.first / zone.volume;
   const double polar = zone.axial;
@@ -123,7 +124,8 @@ TEST(BallUnion, CountsABallWithinAnotherNotAtAll) {
   EXPECT_LT(apart(found.inertia, 8 * pi / 15 * Mat3::Identity()), rounding);
 }
 
-/// A bent chain: 0 and 1 overlap, 1 and 2 overlap, 0 and 2 are apart; so the sum of the balls less two lenses.
+/// A bent chain: 0 and 1 overlap, 1 and 2 overlap, 0 and 2 are apart; so the sum of the balls less two
+/// lenses.
 TEST(BallUnion, OfABentChainIsBallsLessLenses) {
   const double d = 1.5;
   const std::vector<Vec3> at{{0, d, 0}, {0, 0, 0}, {d * std::sin(2.0), d * std::cos(2.0), 0}};
@@ -143,8 +145,7 @@ TEST(BallUnion, OfABentChainIsBallsLessLenses) {
     const Vec3 e = end.normalized();
     first -= lens.first * e;
     // ∫½ρ² dV is that of one axis across twice: ∫y² = ½ of it
-    second -= lens.second * e * e.transpose() +
-              0.5 * lens.axial * (Mat3::Identity() - e * e.transpose());
+    second -= lens.second * e * e.transpose() + 0.5 * lens.axial * (Mat3::Identity() - e * e.transpose());
   }
   const Vec3 centre = first / volume;
   second -= volume * centre * centre.transpose();
@@ -181,8 +182,8 @@ TEST(BallUnion, WhereThreeMeetAgreesWithACloudOfPoints) {
   const std::vector<Vec3> at{{0, 0, 0}, {1, 0, 0}, {0.4, 0.9, 0.2}};
   const std::vector<double> radius{1, 0.9, 0.8};
   const BallUnion found = ball_union(at, radius);
-  // Midpoints of cells, oblique to the balls: of some 50,000 cells at the surface the parts in and out differ at
-  // random, by 1e-4 of the volume.
+  // Midpoints of cells, oblique to the balls: of some 50,000 cells at the surface the parts in and out differ
+  // at random, by 1e-4 of the volume.
   constexpr int n = 200;
   std::mt19937_64 random(9);
   const Mat3 oblique = random_rotation(random);

@@ -39,7 +39,8 @@ TEST(ClumpMeasures, HaveTheStressOfThePlates) {
   // Branches that reach from the clump's centre to the points where the plates push: x and y cancel.
   EXPECT_LT((found.stress - expected).norm(), 1e-14);
   const double volume = model.bodies.clumps.volume[0];
-  for (const Mat3& own : body_stresses(model)) EXPECT_LT((own * volume - expected * found.volume).norm(), 1e-12);
+  for (const Mat3& own : body_stresses(model))
+    EXPECT_LT((own * volume - expected * found.volume).norm(), 1e-12);
 }
 
 TEST(ClumpMeasures, CountAClumpOnce) {
@@ -48,7 +49,8 @@ TEST(ClumpMeasures, CountAClumpOnce) {
   const Measure found = measure(model, regions)[0];
   EXPECT_EQ(found.fabric.bodies, 1);
   EXPECT_EQ(found.fabric.coordination, 4);
-  // The plates cut four caps of height U off: π U² (3R - U)/3 each, in the parts that balls have of the union.
+  // The plates cut four caps of height U off: π U² (3R - U)/3 each, in the parts that balls have of the
+  // union.
   const double ball = 4 * std::numbers::pi / 3;
   const double volume = model.bodies.clumps.volume[0];
   const double cap = std::numbers::pi * pressed * pressed * (3 - pressed) / 3;

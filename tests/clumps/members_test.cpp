@@ -51,8 +51,7 @@ TEST(Members, KeepTheirRowsWhenBodiesAreSorted) {
   // And where they are.
   model::Bodies placed = bodies;
   model::place_members(placed);
-  for (std::size_t i = 0; i < placed.position.size(); ++i)
-    EXPECT_EQ(placed.position[i], bodies.position[i]);
+  for (std::size_t i = 0; i < placed.position.size(); ++i) EXPECT_EQ(placed.position[i], bodies.position[i]);
 }
 
 TEST(Members, GoThroughACellTogether) {
@@ -85,7 +84,8 @@ TEST(Members, DisplacementsOfTheCycleAreExact) {
     const model::Bodies& after = cycle.state().model.bodies;
     const Vec3 theta = dt * after.spin[0];
     const Quat turn(Eigen::AngleAxisd(theta.norm(), theta.normalized()));
-    EXPECT_LT(((turn * before.clumps.orientation[0]).coeffs() - after.clumps.orientation[0].coeffs()).norm(), 1e-14);
+    EXPECT_LT(((turn * before.clumps.orientation[0]).coeffs() - after.clumps.orientation[0].coeffs()).norm(),
+              1e-14);
     for (std::size_t i = 0; i < after.position.size(); ++i)
       EXPECT_LT((before.position[i] + dt * after.velocity[i] - after.position[i]).norm(), 1e-14);
   }
@@ -116,7 +116,8 @@ TEST(Members, ForcesComeTogetherAboutTheCentre) {
   assembly::gather_members(model.bodies, {}, gathered);
   EXPECT_LT((total(gathered) - total(forces)).norm(), 1e-13);
   for (const std::int32_t row : model.bodies.clumps.members(0))
-    if (row != model.bodies.clumps.holder(0)) EXPECT_EQ(gathered.force[static_cast<std::size_t>(row)], Vec3(Vec3::Zero()));
+    if (row != model.bodies.clumps.holder(0))
+      EXPECT_EQ(gathered.force[static_cast<std::size_t>(row)], Vec3(Vec3::Zero()));
 }
 
 TEST(Members, TurnExactlyInTrialDisplacements) {
@@ -125,7 +126,8 @@ TEST(Members, TurnExactlyInTrialDisplacements) {
   builder.clump(odd_shape(), {.position = {1, 2, 3}, .orientation = random_orientation(random)});
   const assembly::Model model = builder.build();
   const auto count = static_cast<std::size_t>(model.bodies.size());
-  assembly::Displacement moved{std::vector<Vec3>(count, Vec3::Zero()), std::vector<Vec3>(count, Vec3::Zero())};
+  assembly::Displacement moved{std::vector<Vec3>(count, Vec3::Zero()),
+                               std::vector<Vec3>(count, Vec3::Zero())};
   const auto holder = static_cast<std::size_t>(model.bodies.clumps.holder(0));
   const Vec3 u(0.1, -0.2, 0.3);
   const Vec3 theta(1.0, 0.5, -0.7);

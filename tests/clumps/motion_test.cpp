@@ -1,9 +1,10 @@
 // Clumps in the explicit cycle.
+#include "support/motion.hpp"
+
 #include "eigengrain/assembly/energies.hpp"
 
 #include "support/bits.hpp"
 #include "support/clumps.hpp"
-#include "support/motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +73,8 @@ TEST(ClumpMotion, StartsAtSecondOrderUnderAConstantMoment) {
   const auto end = [](double dt, double t) {
     SceneBuilder builder({.kn = 3, .ks = 2, .tension = true});
     builder.ball({0.7, 1.9999, 0.1}, 1, 1, fix_all);
-    builder.clump(odd_shape(), {.position = {0.1, 0.2, 0}, .velocity = {0.01, 0, 0}, .spin = {0.02, 0.01, -0.03}});
+    builder.clump(odd_shape(),
+                  {.position = {0.1, 0.2, 0}, .velocity = {0.01, 0, 0}, .spin = {0.02, 0.01, -0.03}});
     cycle::Cycle cycle = cycle_of(builder, dt);
     cycle.run(std::llround(t / dt));
     return position_of(cycle.state(), 2);
@@ -143,7 +145,8 @@ TEST(ClumpMotion, KeepsBothMomentaToRounding) {
   SceneBuilder builder({.kn = 1e3, .ks = 500, .tension = false, .friction = 0.3});
   builder.ball({-0.5, -2.2, 0.4}, 0.8, 1.5).moving({0, 0.8, 0}, {1, 0, 0.5});
   builder.clump(dumbbell(), {.velocity = {0, 0, 0}, .spin = {0.2, 0.3, 0.5}});
-  builder.clump(odd_shape(), {.position = {0.3, 2.6, 0.2}, .velocity = {0.1, -0.9, 0}, .spin = {0.3, 0.0, 2}});
+  builder.clump(odd_shape(),
+                {.position = {0.3, 2.6, 0.2}, .velocity = {0.1, -0.9, 0}, .spin = {0.3, 0.0, 2}});
   cycle::Cycle cycle = cycle_of(builder, 2e-3);
   cycle.step();
   const Vec6 before = momentum_of(cycle.state());
@@ -182,8 +185,9 @@ TEST(ClumpMotion, DoesNotDependOnThreads) {
     if (k % 3 == 0)
       builder.ball(at, 1, 1).moving(random_vector(random));
     else
-      builder.clump(k % 2 == 0 ? dumbbell() : odd_shape(),
-                    {.position = at, .orientation = random_orientation(random), .velocity = random_vector(random)});
+      builder.clump(
+          k % 2 == 0 ? dumbbell() : odd_shape(),
+          {.position = at, .orientation = random_orientation(random), .velocity = random_vector(random)});
   }
   builder.damped(0.2).gravity({0, 0, -1}).plane({0, 0, -2}, {0, 0, 1});
   builder.periodic({24, 24, 40}, {true, true, false});

@@ -1,7 +1,7 @@
 // States with clumps: to a file and back, and on to the bit.
-#include "eigengrain/io/series.hpp"
-
 #include "support/restart.hpp"
+
+#include "eigengrain/io/series.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -37,11 +37,12 @@ std::vector<std::string> mistakes(const std::string& clumps) {
 }
 
 TEST(ClumpScene, NeedsNoOtherBalls) {
-  const model::Scene read = read_scene_text(
-      scene(entry(fmt::format("{}, instances: [{{position: [0, 0, 1]}}, {{position: [1, 0, 0], axis: [1, 0, 0], "
-                              "angle: 90 deg, velocity: [1, 2, 3], spin: [0, 0, 4], fix: [x]}}]",
-                              pair))),
-      ".", "");
+  const model::Scene read =
+      read_scene_text(scene(entry(fmt::format(
+                          "{}, instances: [{{position: [0, 0, 1]}}, {{position: [1, 0, 0], axis: [1, 0, 0], "
+                          "angle: 90 deg, velocity: [1, 2, 3], spin: [0, 0, 4], fix: [x]}}]",
+                          pair))),
+                      ".", "");
   const model::Bodies& bodies = read.bodies;
   const model::Clumps& clumps = bodies.clumps;
   ASSERT_EQ(bodies.size(), 4);
@@ -67,10 +68,10 @@ TEST(ClumpScene, NeedsNoOtherBalls) {
 }
 
 TEST(ClumpScene, NumbersItsBallsBehindTheOthers) {
-  const model::Scene read = read_scene_text(
-      scene(entry(fmt::format("{}, instances: [{{position: [0, 0, 1]}}]", pair)),
-            "balls: [{position: [5, 5, 5], radius: 5 mm, material: grain}]\n"),
-      ".", "");
+  const model::Scene read =
+      read_scene_text(scene(entry(fmt::format("{}, instances: [{{position: [0, 0, 1]}}]", pair)),
+                            "balls: [{position: [5, 5, 5], radius: 5 mm, material: grain}]\n"),
+                      ".", "");
   EXPECT_THAT(read.bodies.identity, ElementsAre(0, 1, 2));
   EXPECT_THAT(read.bodies.clumps.member, ElementsAre(1, 2));
   EXPECT_EQ(read.bodies.clumps.of(0), model::Clumps::none);
@@ -79,9 +80,10 @@ TEST(ClumpScene, NumbersItsBallsBehindTheOthers) {
 
 TEST(ClumpScene, TakesMassPropertiesAsGiven) {
   const model::Scene read = read_scene_text(
-      scene(entry(fmt::format("{}, mass: 2 g, centre: [1 mm, 0, 0], inertia: [1e-8, 2e-8, 2.5e-8], instances: "
-                              "[{{position: [0, 0, 0]}}]",
-                              pair))),
+      scene(
+          entry(fmt::format("{}, mass: 2 g, centre: [1 mm, 0, 0], inertia: [1e-8, 2e-8, 2.5e-8], instances: "
+                            "[{{position: [0, 0, 0]}}]",
+                            pair))),
       ".", "");
   const model::Clumps& clumps = read.bodies.clumps;
   EXPECT_EQ(clumps.mass[0], 2e-3);
@@ -102,10 +104,10 @@ TEST(ClumpScene, SpreadsAMassThatIsGivenAlone) {
 }
 
 TEST(ClumpScene, IsWrappedAsAWhole) {
-  const model::Scene read = read_scene_text(
-      scene(entry(fmt::format("{}, instances: [{{position: [1.2, 0.1, 0.001]}}]", pair)),
-            "periodic: {box: [1, 1, 1]}\n"),
-      ".", "");
+  const model::Scene read =
+      read_scene_text(scene(entry(fmt::format("{}, instances: [{{position: [1.2, 0.1, 0.001]}}]", pair)),
+                            "periodic: {box: [1, 1, 1]}\n"),
+                      ".", "");
   EXPECT_NEAR(read.bodies.clumps.position[0].x(), 0.2, 1e-15);
   EXPECT_NEAR((read.bodies.position[0] - read.bodies.position[1]).norm(), 5e-3, 1e-15);
 }
@@ -118,8 +120,9 @@ TEST(ClumpMistakes, SayWhatAndWhereAndWhatToWrite) {
   EXPECT_THAT(mistakes(entry(fmt::format("{}, instances: []", pair))),
               ElementsAre(HasSubstr("clumps[0].instances: none; add e.g.")));
   EXPECT_THAT(mistakes(entry(pair)), ElementsAre(HasSubstr("clumps[0]: instances is missing")));
-  EXPECT_THAT(mistakes(entry("balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [1 mm, 0, 0], radius: 4 mm}]" + at)),
-              ElementsAre(HasSubstr("clumps[0].balls[1]: lies within balls[0]")));
+  EXPECT_THAT(
+      mistakes(entry("balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [1 mm, 0, 0], radius: 4 mm}]" + at)),
+      ElementsAre(HasSubstr("clumps[0].balls[1]: lies within balls[0]")));
   EXPECT_THAT(mistakes(entry("balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [0, 0, 0], radius: 5 mm}]" + at)),
               ElementsAre(HasSubstr("lies within balls[0]")));
   EXPECT_THAT(mistakes(entry("balls: [{at: [0, 0, 0], radius: -5 mm}]" + at)),
@@ -132,13 +135,15 @@ TEST(ClumpMistakes, SayWhatAndWhereAndWhatToWrite) {
               ElementsAre(HasSubstr("clumps[0].centre: mass, centre and inertia belong together")));
   EXPECT_THAT(mistakes(entry(fmt::format("{}, mass: 1, centre: [0, 0, 0], inertia: [1, 1, 3]", pair) + at)),
               ElementsAre(HasSubstr("clumps[0].inertia: (1, 1, 3) kg m2 belong to no rigid body")));
-  EXPECT_THAT(mistakes(entry(fmt::format("{}, instances: [{{position: [0, 0, 0], fix: [wx]}}]", pair))),
-              ElementsAre(HasSubstr("clumps[0].instances[0].fix: the rotation of a clump is fixed about all axes "
-                                    "or about none; write wx, wy and wz")));
+  EXPECT_THAT(
+      mistakes(entry(fmt::format("{}, instances: [{{position: [0, 0, 0], fix: [wx]}}]", pair))),
+      ElementsAre(HasSubstr("clumps[0].instances[0].fix: the rotation of a clump is fixed about all axes "
+                            "or about none; write wx, wy and wz")));
   EXPECT_THAT(mistakes(entry(fmt::format("{}, instances: [{{position: [0, 0, 0], axis: [0, 0, 0]}}]", pair))),
               ElementsAre(HasSubstr("clumps[0].instances[0].axis: [0, 0, 0] has no direction")));
-  EXPECT_THAT(mistakes(entry(fmt::format("{}, instances: [{{position: [0, 0, 0], angle: 90 mm}}]", pair))),
-              ElementsAre(HasSubstr("clumps[0].instances[0].angle: \"90 mm\" is a length; a pure number is wanted")));
+  EXPECT_THAT(
+      mistakes(entry(fmt::format("{}, instances: [{{position: [0, 0, 0], angle: 90 mm}}]", pair))),
+      ElementsAre(HasSubstr("clumps[0].instances[0].angle: \"90 mm\" is a length; a pure number is wanted")));
   EXPECT_THAT(mistakes(fmt::format("- {{{}{}, material: grian}}\n", pair, at)),
               Contains(HasSubstr("clumps[0].material: unknown material \"grian\"; did you mean \"grain\"?")));
 }

@@ -77,7 +77,8 @@ TEST(ClumpStiffness, IsTheDerivativeOfTheForcesBetweenClumps) {
     for (int k = 0; k < 3; ++k) {
       const model::ClumpShape first = odd_shape();
       const model::ClumpShape second = dumbbell();
-      const model::ClumpStart start{.position = random_vector(random), .orientation = random_orientation(random)};
+      const model::ClumpStart start{.position = random_vector(random),
+                                    .orientation = random_orientation(random)};
       SceneBuilder builder(s);
       builder.clump(first, start);
       builder.clump(second, touching(first, start, second, random_orientation(random),
@@ -91,7 +92,8 @@ TEST(ClumpStiffness, IsTheDerivativeOfTheForcesOnAWall) {
   for (const Springs& s : springs) {
     // A dumbbell that lies on the floor with both balls, and leans on a wall with one.
     SceneBuilder builder(s);
-    builder.clump(dumbbell(), {.position = {0, 0, 1 - overlap}, .orientation = Quat(Eigen::AngleAxisd(0.4, Vec3::UnitZ()))});
+    builder.clump(dumbbell(), {.position = {0, 0, 1 - overlap},
+                               .orientation = Quat(Eigen::AngleAxisd(0.4, Vec3::UnitZ()))});
     builder.plane(Vec3::Zero(), Vec3::UnitZ());
     builder.plane({0, -1 - 0.7 * std::sin(0.4) + overlap, 0}, Vec3::UnitY());
     expect_force_and_stiffness_agree(builder, 3);
@@ -108,7 +110,8 @@ TEST(ClumpStiffness, IsTheDerivativeThroughThePeriodicCell) {
     const System system(builder);
     ASSERT_EQ(system.elements.size(), 2U);
     const Eigen::MatrixXd k = assembly::stiffness_matrix(system);
-    EXPECT_LT((numerical_stiffness(system, step) - k).cwiseAbs().maxCoeff() / k.cwiseAbs().maxCoeff(), accuracy);
+    EXPECT_LT((numerical_stiffness(system, step) - k).cwiseAbs().maxCoeff() / k.cwiseAbs().maxCoeff(),
+              accuracy);
   }
 }
 
@@ -120,13 +123,15 @@ SceneBuilder pile(std::mt19937_64& random, const Springs& s, int bodies, double 
   const double size = 1.6 * std::cbrt(bodies);
   for (int k = 0; k < bodies; ++k)
     centres.emplace_back(size * Vec3(uniform(random), uniform(random), uniform(random)));
-  for (int k = 0; k < bodies / 3; ++k) builder.ball(centres[static_cast<std::size_t>(k)], 0.6, 0.5 + uniform(random));
+  for (int k = 0; k < bodies / 3; ++k)
+    builder.ball(centres[static_cast<std::size_t>(k)], 0.6, 0.5 + uniform(random));
   for (int k = bodies / 3; k < bodies; ++k) {
     model::ClumpStart start{.position = centres[static_cast<std::size_t>(k)],
                             .orientation = random_orientation(random)};
     if (uniform(random) < fixed) {
       const auto bits = static_cast<std::uint8_t>(random() % 8);
-      start.fixed = model::FixedComponents(uniform(random) < 0.5 ? bits : static_cast<std::uint8_t>(bits | 56U));
+      start.fixed =
+          model::FixedComponents(uniform(random) < 0.5 ? bits : static_cast<std::uint8_t>(bits | 56U));
     }
     builder.clump(k % 2 == 0 ? odd_shape() : dumbbell(), start);
   }
@@ -144,8 +149,8 @@ TEST(ClumpStiffness, OfEverySinkIsOneMatrix) {
       // The product without a matrix, in its scaled form too.
       const std::vector<double> scale = s.inverse_sqrt_mass();
       for (const bool scaled : {false, true}) {
-        assembly::StiffnessProduct product(s.unknowns, s.elements,
-                                           scaled ? std::span<const double>(scale) : std::span<const double>());
+        assembly::StiffnessProduct product(
+            s.unknowns, s.elements, scaled ? std::span<const double>(scale) : std::span<const double>());
         const Eigen::VectorXd x = Eigen::VectorXd::Random(k.rows());
         Eigen::VectorXd y(x.size());
         product.apply({x.data(), static_cast<std::size_t>(x.size())},
@@ -161,14 +166,16 @@ TEST(ClumpStiffness, OfEverySinkIsOneMatrix) {
       for (std::int32_t body = 0; body < s.model.bodies.size(); ++body) {
         const std::int32_t block = s.unknowns.rotation(body);
         if (block == assembly::Unknowns::none) continue;
-        const Mat6 own = s.unknowns.in_own_axes(body, body, diagonal.blocks()[static_cast<std::size_t>(body)]);
+        const Mat6 own =
+            s.unknowns.in_own_axes(body, body, diagonal.blocks()[static_cast<std::size_t>(body)]);
         EXPECT_LT((own.bottomRightCorner<3, 3>() - k.block<3, 3>(3 * block, 3 * block)).norm(), 1e-13);
       }
     }
 }
 
 TEST(ClumpStiffness, OnUnknownsOfSpaceHasTheSameSpectrum) {
-  // M with whole tensors of inertia along the axes of space, and K without any turning, from the levers alone.
+  // M with whole tensors of inertia along the axes of space, and K without any turning, from the levers
+  // alone.
   std::mt19937_64 random(15);
   const System s(pile(random, {.kn = 1, .ks = 0.6}, 9));
   const auto n = static_cast<Eigen::Index>(s.unknowns.size());
@@ -189,7 +196,8 @@ TEST(ClumpStiffness, OnUnknownsOfSpaceHasTheSameSpectrum) {
     if (s.unknowns.is_rotation(block) && axes != nullptr) part = *axes * part * axes->transpose();
     m.block<3, 3>(3 * block, 3 * block) = part;
   }
-  const Eigen::VectorXd expected = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(k, m, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd expected =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(k, m, Eigen::EigenvaluesOnly).eigenvalues();
   const Eigen::VectorXd found = s.spectrum();
   ASSERT_EQ(found.size(), expected.size());
   EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-12 * expected.maxCoeff());
@@ -229,9 +237,11 @@ TEST(ClumpUnknowns, AreTheHoldersAndTurnWithoutShear) {
 struct UnknownTangent {
   explicit UnknownTangent(const assembly::Unknowns& numbers)
       : unknowns(numbers),
-        k(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(numbers.size()), static_cast<Eigen::Index>(numbers.size()))) {}
+        k(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(numbers.size()),
+                                static_cast<Eigen::Index>(numbers.size()))) {}
   void add(std::int32_t a, std::int32_t b, const Mat12& block) {
-    const std::array<std::int32_t, 4> rows{unknowns.of(a)[0], unknowns.of(a)[1], unknowns.of(b)[0], unknowns.of(b)[1]};
+    const std::array<std::int32_t, 4> rows{unknowns.of(a)[0], unknowns.of(a)[1], unknowns.of(b)[0],
+                                           unknowns.of(b)[1]};
     for (Eigen::Index i = 0; i < 4; ++i)
       for (Eigen::Index j = 0; j < 4; ++j) {
         const std::int32_t row = rows[static_cast<std::size_t>(i)];

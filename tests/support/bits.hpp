@@ -18,7 +18,8 @@ struct Threads {
   int before = threads();
 };
 
-/// All that moves in a state: balls, clumps, forces, shear, walls, surfaces, and what the near list was made for.
+/// All that moves in a state: balls, clumps, forces, shear, walls, surfaces, and what the near list was made
+/// for.
 inline std::string bits_of(const assembly::State& state) {
   std::string bits;
   const auto add = [&](const auto& column) {

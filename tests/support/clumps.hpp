@@ -30,7 +30,8 @@ inline model::ClumpShape union_shape(const std::vector<Vec3>& at, const std::vec
 /// Balls where they are asked for in the principal axes, with given mass properties.
 inline model::ClumpShape given_shape(std::vector<Vec3> place, std::vector<double> radius, double mass,
                                      const Vec3& inertia) {
-  return {.place = std::move(place), .radius = std::move(radius), .mass = mass, .volume = 1, .inertia = inertia};
+  return {
+      .place = std::move(place), .radius = std::move(radius), .mass = mass, .volume = 1, .inertia = inertia};
 }
 
 /// Two balls of radius one, their centres 2a apart along the first principal axis.
@@ -50,8 +51,9 @@ inline Quat random_orientation(std::mt19937_64& random) {
 /// Where a second clump is whose ball touches one of the first, along n from the first to the second, with an
 /// overlap of this part of their radii.
 inline model::ClumpStart beside(const model::ClumpShape& first, const model::ClumpStart& start,
-                                std::size_t ball_first, const model::ClumpShape& second, const Quat& orientation,
-                                std::size_t ball_second, const Vec3& n, double overlap = 1e-9) {
+                                std::size_t ball_first, const model::ClumpShape& second,
+                                const Quat& orientation, std::size_t ball_second, const Vec3& n,
+                                double overlap = 1e-9) {
   const double reach = (first.radius[ball_first] + second.radius[ball_second]) * (1 - overlap);
   return {.position = start.position + start.orientation * first.place[ball_first] + reach * n -
                       orientation * second.place[ball_second],

@@ -1,4 +1,6 @@
 // Clumps in what PETSc and SLEPc solve: matrix, true timestep, equilibrium.
+#include "support/clumps.hpp"
+
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/cycle/cycle.hpp"
 #include "eigengrain/cycle/policy.hpp"
@@ -6,7 +8,6 @@
 #include "eigengrain/timestep/truth.hpp"
 
 #include "petsc/stiffness_matrix.hpp"
-#include "support/clumps.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,8 @@ SceneBuilder heap(std::uint64_t seed, int layers, const Springs& springs) {
     if (k % 4 == 3)
       builder.ball(at, 0.9, 3);
     else
-      builder.clump(k % 2 == 0 ? dumbbell() : odd_shape(), {.position = at, .orientation = random_orientation(random)});
+      builder.clump(k % 2 == 0 ? dumbbell() : odd_shape(),
+                    {.position = at, .orientation = random_orientation(random)});
   }
   builder.plane(Vec3::Zero(), Vec3::UnitZ()).periodic({2 * pitch, 2 * pitch, 1}, {true, true, false});
   builder.gravity({0, 0, -1}).damped(0.7);
@@ -59,7 +61,8 @@ TEST(ClumpMatrix, OfPetscIsTheOneOfEigen) {
 
 TEST(ClumpRelax, PutsADumbbellOnItsSide) {
   SceneBuilder builder({.kn = 1e4, .ks = 5e3, .tension = false});
-  builder.clump(dumbbell(), {.position = {0, 0, 1.4}, .orientation = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitY()))});
+  builder.clump(dumbbell(),
+                {.position = {0, 0, 1.4}, .orientation = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitY()))});
   builder.plane(Vec3::Zero(), Vec3::UnitZ()).gravity({0, 0, -10});
   assembly::State state = cycle::start(builder.scene());
   const relaxation::RelaxResult result = relaxation::relax(state);
@@ -79,7 +82,8 @@ TEST(ClumpRelax, FindsTheEquilibriumOfAHeapAndItStays) {
   relaxation::RelaxOptions options;
   options.max_steps = 400000;
   const relaxation::RelaxResult result = relaxation::relax(state, options);
-  EXPECT_TRUE(result.converged) << result.end.mean << ' ' << result.end.moment_mean << ' ' << result.explicit_steps;
+  EXPECT_TRUE(result.converged) << result.end.mean << ' ' << result.end.moment_mean << ' '
+                                << result.explicit_steps;
   EXPECT_NE(result.method.find("newton"), std::string::npos) << result.method;
   EXPECT_EQ(result.end.bodies, 32);
   EXPECT_LE(assembly::balance_of(state).mean, 1e-10);

@@ -21,8 +21,8 @@ struct FreeRotation {
 /// rotation about a, half of it before and half of it after. a and b are the axes whose 1/I are nearest to
 /// each other, so a symmetric top is exact and the error is that of the difference of 1/I_a and 1/I_b. It is
 /// symplectic, symmetric in time and of second order; L does not change at all, and the energy is bounded
-/// (Touma and Wisdom, Astron. J. 107:1189, 1994; Dullweber, Leimkuhler and McLachlan, J. Chem. Phys. 107:5840,
-/// 1997, split into three axes instead; compared in Fassò, J. Comput. Phys. 189:527, 2003).
+/// (Touma and Wisdom, Astron. J. 107:1189, 1994; Dullweber, Leimkuhler and McLachlan, J. Chem. Phys.
+/// 107:5840, 1997, split into three axes instead; compared in Fassò, J. Comput. Phys. 189:527, 2003).
 ///
 /// inertia  principal moments, kg m²
 FreeRotation rotate_freely(const Quat& orientation, const Vec3& angular_momentum, const Vec3& inertia,

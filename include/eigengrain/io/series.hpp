@@ -13,8 +13,9 @@ namespace eigengrain::io {
 /// Frames of a run for ParaView: FOLDER/STEM.pvd, which lists FOLDER/STEM_series/STEM_<step>.vtu.
 ///
 /// A frame has a point a ball, in the order of identity, so that frames can be compared ball by ball: radius,
-/// identity, clump (where there are any; -1: none), velocity, spin (where something turns), force (of all contacts, N) and contacts (number of those
-/// that act); and the fields TimeValue (s) and Step. All numbers are the run's own, to the bit.
+/// identity, clump (where there are any; -1: none), velocity, spin (where something turns), force (of all
+/// contacts, N) and contacts (number of those that act); and the fields TimeValue (s) and Step. All numbers
+/// are the run's own, to the bit.
 ///
 /// Each file is there in full or not at all, and the list names only frames that are there: a run may be
 /// killed at any time.

@@ -14,9 +14,10 @@ struct ActingContact {
 
   std::int32_t a = 0;  ///< row of the first body; of a clump its holder
   std::int32_t b = 0;  ///< row of the second one, or wall
-  Vec3 branch;         ///< ℓ: from the centre of a (model::centre_of) to that of b's image; at a wall, to the contact point, m
-  Vec3 normal;         ///< n, from a to b
-  Vec3 force;          ///< F, of a on b, N
+  Vec3 branch;  ///< ℓ: from the centre of a (model::centre_of) to that of b's image; at a wall, to the
+                ///< contact point, m
+  Vec3 normal;  ///< n, from a to b
+  Vec3 force;   ///< F, of a on b, N
   bool slides = false;
 };
 
@@ -29,8 +30,9 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model);
 /// Géotechnique 50:43, 2000); without, 4 in three dimensions, or 3 and the body's weight.
 std::int32_t least_contacts(const assembly::Model& model);
 
-/// [bodies] Whether a body is a rattler; the balls of a clump as their holder: it has less than `least` contacts with walls and with bodies that
-/// are no rattlers themselves. What may not translate is held and no rattler. Cost O(bodies + contacts).
+/// [bodies] Whether a body is a rattler; the balls of a clump as their holder: it has less than `least`
+/// contacts with walls and with bodies that are no rattlers themselves. What may not translate is held and no
+/// rattler. Cost O(bodies + contacts).
 std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingContact> contacts,
                            std::int32_t least);
 

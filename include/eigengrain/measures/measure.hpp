@@ -36,8 +36,8 @@ std::optional<Mat3> velocity_gradient(const Window& window, const model::Bodies&
 /// the mean over its balls).
 double porosity(const Window& window, const model::Bodies& bodies);
 
-/// Means over bodies (balls, and clumps as a whole) with their centres in a window and over the contacts at them, at walls too. A contact of
-/// two bodies counts at both.
+/// Means over bodies (balls, and clumps as a whole) with their centres in a window and over the contacts at
+/// them, at walls too. A contact of two bodies counts at both.
 struct Fabric {
   std::int64_t bodies = 0;
   std::int64_t rattlers = 0;

@@ -60,19 +60,19 @@ double sphere_inertia(double radius, double mass);
 
 /// A clump as its balls and mass properties, about the centre of mass and in principal axes.
 struct ClumpShape {
-  std::vector<Vec3> place;     ///< centres of the balls, m
-  std::vector<double> radius;  ///< [balls] m
-  double mass = 0;             ///< kg
-  double volume = 0;           ///< m³
+  std::vector<Vec3> place;      ///< centres of the balls, m
+  std::vector<double> radius;   ///< [balls] m
+  double mass = 0;              ///< kg
+  double volume = 0;            ///< m³
   Vec3 inertia = Vec3::Zero();  ///< principal moments, kg m²
 };
 
 /// Where a clump starts, and how it moves.
 struct ClumpStart {
-  Vec3 position = Vec3::Zero();           ///< of the centre of mass, m
-  Quat orientation = Quat::Identity();    ///< from the principal axes to space
-  Vec3 velocity = Vec3::Zero();           ///< m/s
-  Vec3 spin = Vec3::Zero();               ///< rad/s
+  Vec3 position = Vec3::Zero();         ///< of the centre of mass, m
+  Quat orientation = Quat::Identity();  ///< from the principal axes to space
+  Vec3 velocity = Vec3::Zero();         ///< m/s
+  Vec3 spin = Vec3::Zero();             ///< rad/s
   std::int32_t material = 0;
   FixedComponents fixed{};
 };

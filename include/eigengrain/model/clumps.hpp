@@ -29,8 +29,8 @@ struct Clumps {
   std::vector<Vec3> spin;               ///< rotation of the last step over dt; at the start as given, rad/s
   std::vector<std::int32_t> starts{0};  ///< [clumps + 1] the balls of clump c: starts[c] to starts[c + 1] of
   std::vector<std::int32_t> member;     ///< rows of the bodies, in the order of the scene
-  std::vector<Vec3> place;              ///< [member] centre of the ball from that of the clump, principal axes, m
-  std::vector<std::int32_t> of_row;     ///< [bodies, or fewer: none beyond] the clump of a ball, or none
+  std::vector<Vec3> place;  ///< [member] centre of the ball from that of the clump, principal axes, m
+  std::vector<std::int32_t> of_row;  ///< [bodies, or fewer: none beyond] the clump of a ball, or none
 
   bool empty() const { return position.empty(); }
   std::int32_t size() const { return static_cast<std::int32_t>(position.size()); }
