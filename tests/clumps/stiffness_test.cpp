@@ -233,27 +233,6 @@ TEST(ClumpUnknowns, AreTheHoldersAndTurnWithoutShear) {
   EXPECT_EQ(s.unknowns.set_aside().size(), 1U);  // one body, not two balls
 }
 
-/// The consistent tangent on the unknowns of bodies.
-struct UnknownTangent {
-  explicit UnknownTangent(const assembly::Unknowns& numbers)
-      : unknowns(numbers),
-        k(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(numbers.size()),
-                                static_cast<Eigen::Index>(numbers.size()))) {}
-  void add(std::int32_t a, std::int32_t b, const Mat12& block) {
-    const std::array<std::int32_t, 4> rows{unknowns.of(a)[0], unknowns.of(a)[1], unknowns.of(b)[0],
-                                           unknowns.of(b)[1]};
-    for (Eigen::Index i = 0; i < 4; ++i)
-      for (Eigen::Index j = 0; j < 4; ++j) {
-        const std::int32_t row = rows[static_cast<std::size_t>(i)];
-        const std::int32_t column = rows[static_cast<std::size_t>(j)];
-        if (row == assembly::Unknowns::none || column == assembly::Unknowns::none) continue;
-        k.block<3, 3>(3 * row, 3 * column) += block.block<3, 3>(3 * i, 3 * j);
-      }
-  }
-  const assembly::Unknowns& unknowns;
-  Eigen::MatrixXd k;
-};
-
 TEST(ClumpTangent, IsTheDerivativeAtLargeOverlaps) {
   // Overlaps of some percent of the radius: turning frames, moving points and the moving arms of the forces
   // on the balls of clumps all count. Differences of 1e-6: errors of 1e-10 by rounding, 1e-12 by curvature.

@@ -5,6 +5,7 @@
 
 #include "support/scenes.hpp"
 
+#include <array>
 #include <random>
 #include <utility>
 #include <vector>
@@ -78,6 +79,27 @@ inline SceneBuilder touching_pair(const Springs& springs, std::mt19937_64& rando
   builder.clump(second, beside(first, start, 1, second, orientation.normalized(), 0, n, overlap));
   return builder;
 }
+
+/// A sink of tangents that adds to one dense matrix on the unknowns of bodies.
+struct UnknownTangent {
+  explicit UnknownTangent(const assembly::Unknowns& numbers)
+      : unknowns(numbers),
+        k(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(numbers.size()),
+                                static_cast<Eigen::Index>(numbers.size()))) {}
+  void add(std::int32_t a, std::int32_t b, const Mat12& block) {
+    const std::array<std::int32_t, 4> rows{unknowns.of(a)[0], unknowns.of(a)[1], unknowns.of(b)[0],
+                                           unknowns.of(b)[1]};
+    for (Eigen::Index i = 0; i < 4; ++i)
+      for (Eigen::Index j = 0; j < 4; ++j) {
+        const std::int32_t row = rows[static_cast<std::size_t>(i)];
+        const std::int32_t column = rows[static_cast<std::size_t>(j)];
+        if (row == assembly::Unknowns::none || column == assembly::Unknowns::none) continue;
+        k.block<3, 3>(3 * row, 3 * column) += block.block<3, 3>(3 * i, 3 * j);
+      }
+  }
+  const assembly::Unknowns& unknowns;
+  Eigen::MatrixXd k;
+};
 
 /// Forces and moments on the numbered unknowns after the displacement h x from the committed state, of clumps
 /// along their principal axes where they stand.

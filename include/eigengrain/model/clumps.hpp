@@ -27,7 +27,7 @@ struct Clumps {
   std::vector<Vec3> velocity;           ///< of the centre, m/s
   std::vector<Vec3> angular_momentum;   ///< about the centre, along the axes of space, kg m²/s
   std::vector<Vec3> spin;               ///< rotation of the last step over dt; at the start as given, rad/s
-  std::vector<std::int32_t> starts{0};  ///< [clumps + 1] the balls of clump c: starts[c] to starts[c + 1] of
+  std::vector<std::int32_t> starts{0};  ///< [clumps + 1] where the balls of a clump begin in `member`
   std::vector<std::int32_t> member;     ///< rows of the bodies, in the order of the scene
   std::vector<Vec3> place;  ///< [member] centre of the ball from that of the clump, principal axes, m
   std::vector<std::int32_t> of_row;  ///< [bodies, or fewer: none beyond] the clump of a ball, or none
