@@ -42,11 +42,12 @@ void check_motion(const SceneDraft& draft, int normal, Diagnostics& diagnostics)
   for (std::size_t i = 0; i < balls.spin.size(); ++i)
     for (int k = 0; k < 3; ++k)
       if (k != normal && balls.spin[i][k] != 0)
-        diagnostics.add(draft.ball_places.of(static_cast<std::int32_t>(i)),
-                        fmt::format("ball {}: a spin of {} rad/s about {}; in a planar scene balls turn about "
-                                    "{} alone: write 0 there",
-                                    i, balls.spin[i][k], axis_names[static_cast<std::size_t>(k)], axis),
-                        "spin out of the plane");
+        diagnostics.add(
+            draft.ball_places.of(static_cast<std::int32_t>(i)),
+            fmt::format("ball {}: a spin of {} rad/s about {}; in a planar scene balls turn about "
+                        "{} alone: write 0 there",
+                        i, balls.spin[i][k], axis_names[static_cast<std::size_t>(k)], axis),
+            "spin out of the plane");
 }
 
 }  // namespace

@@ -22,8 +22,9 @@ std::vector<KeyDescription> ball_keys() {
       {.path = "planar",
        .kind = section,
        .example = "{shape: disk, normal: z}",
-       .description = "a scene in a plane: bodies keep their place across it and turn about its normal alone, "
-                      "so each has three unknowns"},
+       .description =
+           "a scene in a plane: bodies keep their place across it and turn about its normal alone, "
+           "so each has three unknowns"},
       {.path = "planar.shape",
        .kind = word,
        .fallback = "sphere",

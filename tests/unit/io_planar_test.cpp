@@ -45,8 +45,9 @@ TEST(Planar, SpheresKeepTheirMassesAndDisksHaveTheirs) {
 }
 
 TEST(Planar, ReportsWhatLeavesThePlane) {
-  EXPECT_THAT(reported("normal: z", ""),
-              ElementsAre(HasSubstr("ball 1: z = 0 m, and ball 0 has z = 0.5 m; the balls of a planar scene")));
+  EXPECT_THAT(
+      reported("normal: z", ""),
+      ElementsAre(HasSubstr("ball 1: z = 0 m, and ball 0 has z = 0.5 m; the balls of a planar scene")));
   EXPECT_THAT(reported("normal: y", ", velocity: [1, 2, 0]"),
               ElementsAre(HasSubstr("ball 1: a velocity of 2 m/s along y leaves the plane")));
   EXPECT_THAT(reported("normal: y", ", spin: [0, 1, 3]"),
@@ -57,11 +58,12 @@ TEST(Planar, ReportsWhatLeavesThePlane) {
 
 TEST(Planar, CentresMayBeRoundedInFiles) {
   EXPECT_THAT(reported("normal: y", ""), ElementsAre());
-  const std::string rounded = "planar: {}\nmaterials: [{name: grain, density: 2500}]\n"
-                              "contacts: [{between: [any, any], law: linear, kn: 1e5}]\n"
-                              "balls:\n"
-                              "  - {position: [0, 0, 0.3], radius: 50 mm, material: grain}\n"
-                              "  - {position: [1, 0, 0.30000001], radius: 50 mm, material: grain}\n";
+  const std::string rounded =
+      "planar: {}\nmaterials: [{name: grain, density: 2500}]\n"
+      "contacts: [{between: [any, any], law: linear, kn: 1e5}]\n"
+      "balls:\n"
+      "  - {position: [0, 0, 0.3], radius: 50 mm, material: grain}\n"
+      "  - {position: [1, 0, 0.30000001], radius: 50 mm, material: grain}\n";
   EXPECT_THAT(texts_of(mistakes_in(rounded)), ElementsAre());
 }
 

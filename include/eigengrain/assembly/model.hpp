@@ -20,8 +20,8 @@ struct Model {
   std::vector<model::WallMotion> wall_motions;        ///< of those that move
   std::vector<model::WallPose> wall_poses;            ///< [wall_motions] where these are now
   model::PeriodicCell cell;
-  Vec3 gravity = Vec3::Zero();  ///< m/s²
-  double local_damping = 0;     ///< α
+  Vec3 gravity = Vec3::Zero();                   ///< m/s²
+  double local_damping = 0;                      ///< α
   double lever_cut = contact::to_contact_point;  ///< of the overlap, from the levers of contacts
   contact::Contacts contacts;
 

@@ -12,11 +12,11 @@ inline constexpr double to_surface = 0;
 
 /// Where two sides touch (PFC3D eqs. 1.5-1.8).
 struct ContactGeometry {
-  Vec3 normal;            ///< n, unit, from the first side to the second
-  double overlap;         ///< U, m; positive when the surfaces interpenetrate
-  Vec3 lever_a;           ///< R_a = x_C - x_a, m
-  Vec3 lever_b;           ///< R_b = x_C - x_b, m; from a wall's centre where the second side is one
-  double reduced_radius;  ///< R*, 1/R* = Σ 1/R, m; a wall is flat
+  Vec3 normal;                    ///< n, unit, from the first side to the second
+  double overlap;                 ///< U, m; positive when the surfaces interpenetrate
+  Vec3 lever_a;                   ///< R_a = x_C - x_a, m
+  Vec3 lever_b;                   ///< R_b = x_C - x_b, m; from a wall's centre where the second side is one
+  double reduced_radius;          ///< R*, 1/R* = Σ 1/R, m; a wall is flat
   double cut = to_contact_point;  ///< of the overlap, from the levers
 
   /// From the centre of the first side to that of the second, m.
@@ -31,12 +31,7 @@ inline ContactGeometry ball_ball(const Vec3& x_a, double r_a, const Vec3& x_b, d
   const double distance = branch.norm();
   const Vec3 n = branch / distance;
   const double overlap = r_a + r_b - distance;
-  return {n,
-          overlap,
-          (r_a - cut * overlap) * n,
-          -(r_b - cut * overlap) * n,
-          r_a * r_b / (r_a + r_b),
-          cut};
+  return {n, overlap, (r_a - cut * overlap) * n, -(r_b - cut * overlap) * n, r_a * r_b / (r_a + r_b), cut};
 }
 
 /// A ball and a one-sided plane: n = -(normal of the plane), d the signed distance of the centre from it,

@@ -54,7 +54,7 @@ struct Placement {
   const model::Facets* facets = nullptr;  ///< of all surfaces
   std::span<const SurfacePlace> surfaces{};
   std::span<const SurfacePlace> middle_surfaces{};  ///< in the middle of the step; empty where none moves
-  double lever_cut = to_contact_point;  ///< of the overlap, from the levers
+  double lever_cut = to_contact_point;              ///< of the overlap, from the levers
   std::span<const Quat> orientation{};  ///< [bodies] or empty; a trial orientation where position is one
 };
 
@@ -162,10 +162,9 @@ struct BallFacet {
   static ContactGeometry geometry_of(const Placement& placement, std::span<const SurfacePlace> places,
                                      const Pair& pair, const Vec3& back) {
     const SurfacePlace& place = place_of(placement, places, pair);
-    ContactGeometry result = ball_feature(local_centre(placement, places, pair, back),
-                                          placement.radius[pair.a], facet_of(placement, pair),
-                                          feature(placement, pair), pair.side < 0 ? -1 : 1, place.start,
-                                          placement.lever_cut);
+    ContactGeometry result = ball_feature(
+        local_centre(placement, places, pair, back), placement.radius[pair.a], facet_of(placement, pair),
+        feature(placement, pair), pair.side < 0 ? -1 : 1, place.start, placement.lever_cut);
     if (!pair.is_contact()) result.overlap = std::min(result.overlap, 0.0);
     result.normal = place.turned(result.normal);
     result.lever_a = place.turned(result.lever_a);

@@ -39,9 +39,9 @@ struct ShearOptions {
        .kind = ParameterDescription::Kind::flag,
        .unit = "",
        .default_value = 0,
-       .description =
-           "project the shear force onto the new contact plane, in place of turning it, and let it begin with "
-           "all of the step in which the contact forms, as LAMMPS's gran/hooke/history does"},
+       .description = "project the shear force onto the new contact plane, in place of turning it, and let "
+                      "it begin with "
+                      "all of the step in which the contact forms, as LAMMPS's gran/hooke/history does"},
   }};
   /// values: of these parameters, and perhaps of more behind them.
   static ShearOptions from_values(std::span<const double> values) {
@@ -72,7 +72,8 @@ struct Response {
 ///   slip                 |F_s| <= μ F_n
 ///   energy               normal energy + ½ |F_s|²/k_s
 ///
-/// F_s starts at zero when the contact forms (`projected`: with the increment of that step). k_s counts only where friction is positive.
+/// F_s starts at zero when the contact forms (`projected`: with the increment of that step). k_s counts only
+/// where friction is positive.
 ///
 /// Springs say what F_n, k_s and the energy are (laws/linear.hpp, hertz.hpp, hysteretic.hpp): Params with
 /// `friction` and `shear` (ShearOptions); Memory, what they remember beside the shear force;
