@@ -218,7 +218,8 @@ void renew_forces(State& state) {
   const model::Bodies& bodies = state.model.bodies;
   BodyForces sum;
   ContactForceSum contacts(state.model, state.turns());
-  contacts.advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation}, sum);
+  contacts.advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation},
+                   sum);
   note_breaks(state, contacts.broken());
   state.force = std::move(sum.force);
   state.moment = std::move(sum.moment);

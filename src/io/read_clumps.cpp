@@ -181,6 +181,10 @@ void read_entry(const Section& entry, SceneDraft& draft) {
 }  // namespace
 
 void read_clumps(const Section& root, SceneDraft& draft) {
+  if (draft.planar && root.has("clumps"))
+    return root.report("clumps",
+                       "not in a planar scene: a clump turns about all axes or about none; leave out "
+                       "planar, or make the bodies of balls with bonds");
   const std::int64_t mistakes_before = root.diagnostics().count();
   for (const Section& entry : root.sections("clumps")) read_entry(entry, draft);
   if (root.diagnostics().count() != mistakes_before) draft.balls_complete = false;

@@ -73,9 +73,11 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
     found.normal = geometry.normal;
     found.force = contact::force_now(group.law, placement, pair, geometry, group.states[c]).force;
     found.b = Kinematics::second_is_body ? bodies.clumps.owner(pair.b) : ActingContact::wall;
-    found.branch = geometry.lever_a + assembly::lever_of(bodies, pair.a);
     if constexpr (Kinematics::second_is_body)
-      found.branch -= geometry.lever_b + assembly::lever_of(bodies, pair.b);
+      found.branch =
+          geometry.branch() + assembly::lever_of(bodies, pair.a) - assembly::lever_of(bodies, pair.b);
+    else
+      found.branch = geometry.lever_a + assembly::lever_of(bodies, pair.a);
     if constexpr (is_beside_law<typename Group::LawType>) {
       beside.emplace_back(pair, found);
     } else {

@@ -148,6 +148,12 @@ TEST(ClumpMistakes, SayWhatAndWhereAndWhatToWrite) {
               Contains(HasSubstr("clumps[0].material: unknown material \"grian\"; did you mean \"grain\"?")));
 }
 
+TEST(ClumpMistakes, OfAPlane) {
+  const std::string at = ", instances: [{position: [0, 0, 0]}]";
+  EXPECT_THAT(texts_of(mistakes_in(scene(entry(pair + at), "planar: {normal: z}\n"))),
+              Contains(HasSubstr("clumps: not in a planar scene")));
+}
+
 TEST(ClumpMistakes, OfPlacesAreFoundAsThoseOfBalls) {
   const std::string at = ", instances: [{position: [0, 0, -1]}, {position: [0, 0, 2 mm]}]";
   const std::vector<std::string> behind = texts_of(mistakes_in(

@@ -71,6 +71,12 @@ std::vector<std::string> scenes_with_room() {
   const std::string polygon =
       "walls: [{polygon: {corners: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}, material: grain}]\n";
   const std::string mesh = "walls: [{mesh: {file: drum.stl, unit: mm}, material: grain}]\n";
+  const std::string clump =
+      "clumps: [{balls: [{at: [0, 0, 0], radius: 5 mm}], material: grain, instances: [{position: [0.2, 0.2, "
+      "0.2]}]}]\n";
+  const std::string clump_as_given =
+      "clumps: [{balls: [{at: [0, 0, 0], radius: 5 mm}], material: grain, mass: 1 g, centre: [0, 0, 0], "
+      "inertia: [1e-8, 1e-8, 1e-8], instances: [{position: [0.2, 0.2, 0.2]}]}]\n";
   const std::string periodic = "periodic: {box: [1, 1, 1]}\n";
   const std::string fixed = "timestep: {policy: fixed, dt: 1e-5}\n";
   const std::string table = "histories: [{file: table.csv, of: unbalanced, balls: 0}]\n";
@@ -87,6 +93,8 @@ std::vector<std::string> scenes_with_room() {
                                   materials + no_law + passing,
                                   materials + no_law + ball + plane,
                                   materials + no_law + ball + box,
+                                  materials + no_law + ball + clump,
+                                  materials + no_law + ball + clump_as_given,
                                   materials + no_law + ball + carried,
                                   materials + no_law + ball + polygon,
                                   materials + no_law + ball + driven,

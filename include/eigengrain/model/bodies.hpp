@@ -58,6 +58,10 @@ struct Bodies {
 double sphere_mass(double radius, double density);
 double sphere_inertia(double radius, double mass);
 
+/// The same of a disk of unit thickness about its axis: m = π R² ρ · 1 m, I = 1/2 m R².
+double disk_mass(double radius, double density);
+double disk_inertia(double radius, double mass);
+
 /// A clump as its balls and mass properties, about the centre of mass and in principal axes.
 struct ClumpShape {
   std::vector<Vec3> place;      ///< centres of the balls, m
