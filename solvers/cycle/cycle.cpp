@@ -1,6 +1,7 @@
 #include "eigengrain/cycle/cycle.hpp"
 
 #include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
 
@@ -26,17 +27,44 @@ double mean_radius(const model::Bodies& bodies) {
   return std::accumulate(bodies.radius.begin(), bodies.radius.end(), 0.0) / bodies.size();
 }
 
+/// Where nobody keeps an energy ledger.
+struct NoWork {
+  static constexpr bool counts = false;
+  NoWork(double /*behind*/, double /*ahead*/) {}
+  void free(double /*damping*/, double /*before*/, double /*after*/) {}
+  void held(double /*force*/, double /*velocity*/) {}
+  void gravity(const Vec3& /*weight*/, const Vec3& /*velocity*/) {}
+};
+
+/// The work that a kick decides: half of it over the step behind and half over the step ahead, the way of
+/// each being its velocity times its length (measures/ledger.hpp).
+struct KickWork {
+  static constexpr bool counts = true;
+  KickWork(double step_behind, double step_ahead) : behind(step_behind), ahead(step_ahead) {}
+  void free(double damping, double before, double after) {
+    sum.damping -= 0.5 * damping * (behind * before + ahead * after);
+  }
+  void held(double force, double velocity) { sum.prescribed -= 0.5 * force * (behind + ahead) * velocity; }
+  void gravity(const Vec3& weight, const Vec3& velocity) { sum.gravity += ahead * weight.dot(velocity); }
+
+  double behind;  ///< s
+  double ahead;   ///< s
+  assembly::EnergyIntegrals sum{};
+};
+
 /// Changes the free components of a velocity by the damped force of its body.
+template <class Work>
 void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, double damping,
-          std::uint8_t fixed) {
+          std::uint8_t fixed, Work& work) {
   for (int k = 0; k < 3; ++k) {
-    if (((fixed >> k) & 1) != 0) continue;
-    double f = force[k];
-    if (velocity[k] > 0)
-      f -= damping * std::abs(f);
-    else if (velocity[k] < 0)
-      f += damping * std::abs(f);
-    velocity[k] += duration * f / inertia;
+    if (((fixed >> k) & 1) != 0) {
+      work.held(force[k], velocity[k]);
+      continue;
+    }
+    const double before = velocity[k];
+    const double resistance = assembly::local_damping_force(force[k], before, damping);
+    velocity[k] += duration * (force[k] + resistance) / inertia;
+    work.free(resistance, before, velocity[k]);
   }
 }
 
@@ -74,27 +102,33 @@ Cycle::Cycle(State state, TimestepPolicy policy)
   if (state_.next_dt == 0) choose_timestep();
 }
 
+template <class Work>
 double Cycle::move(double duration, double dt) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
   const double damping = state_.model.local_damping;
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
+  std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);
   for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     double way = 0;
+    Work work(state_.dt, dt);
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       const model::FixedComponents fixed = bodies.fixed[i];
       const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
-      kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation());
+      kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation(), work);
+      work.gravity(bodies.mass[i] * state_.model.gravity, bodies.velocity[i]);
       bodies.position[i] += dt * bodies.velocity[i];
       if (state_.turns())
-        kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation());
+        kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation(), work);
       const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
     farthest[chunk] = way;
+    if constexpr (Work::counts) works[chunk] = work.sum;
   });
+  for (const assembly::EnergyIntegrals& work : works) state_.ledger->integrals += work;
   return *std::max_element(farthest.begin(), farthest.end());
 }
 
@@ -116,12 +150,15 @@ void Cycle::choose_timestep() {
 void Cycle::step() {
   const double dt = state_.next_dt;
   const double half_skin = 0.5 * state_.list.skin;
-  const bool expired = !(move(0.5 * (state_.dt + dt), dt) <= half_skin * half_skin);
+  const double duration = 0.5 * (state_.dt + dt);
+  const double farthest = state_.ledger ? move<KickWork>(duration, dt) : move<NoWork>(duration, dt);
+  const bool expired = !(farthest <= half_skin * half_skin);
   if (expired) list_anew();
 
   model::Bodies& bodies = state_.model.bodies;
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
-  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt}, sum);
+  forces_.advance(state_.model, {bodies.position, bodies.velocity, bodies.spin, dt}, sum,
+                  state_.ledger ? &state_.ledger->integrals.contacts : nullptr);
   state_.force = std::move(sum.force);
   state_.moment = std::move(sum.moment);
 

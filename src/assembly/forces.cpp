@@ -31,6 +31,33 @@ std::int64_t chunk_of_bodies(std::int64_t bodies) {
   return std::clamp<std::int64_t>(bodies / 16, 128, 2048);
 }
 
+/// Nobody looks.
+struct Unobserved {
+  static constexpr bool looks = false;
+};
+
+/// Adds up what contacts dissipate, in the order of the contacts in a chunk and of the chunks.
+class DissipationObserver {
+ public:
+  static constexpr bool looks = true;
+
+  explicit DissipationObserver(std::int64_t chunks) : of_chunk_(static_cast<std::size_t>(chunks)) {}
+
+  template <class Law>
+  void see(std::int64_t chunk, const Law& law, const contact::ContactMotion& motion,
+           const typename Law::State& old, const typename Law::State& next) {
+    if constexpr (contact::DissipativeLaw<Law>) of_chunk_[chunk] += law.dissipation(motion, old, next);
+  }
+  contact::Dissipation total() const {
+    contact::Dissipation sum;
+    for (const contact::Dissipation& part : of_chunk_) sum += part;
+    return sum;
+  }
+
+ private:
+  std::vector<contact::Dissipation> of_chunk_;
+};
+
 }  // namespace
 
 ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns) {
@@ -68,9 +95,9 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
   });
 }
 
-template <bool turns, bool commit, class Group>
+template <bool turns, bool commit, class Group, class Observer>
 void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement,
-                                const Trial& trial, BodyForces& sum) {
+                                const Trial& trial, BodyForces& sum, Observer& observer) {
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using State = typename std::decay_t<Group>::State;
   // Flat: the small functions of kinematics and laws are many, and calls among them pass everything through
@@ -82,6 +109,9 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
       const auto& old = group.states[c];
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
       if (!group.law.acts(contact::at_rest(geometry), old)) {
+        if constexpr (Observer::looks)
+          observer.see(chunk, group.law, motion_in<Kinematics>(group.law, placement, trial, pair, geometry),
+                       old, State{});
         if constexpr (commit) group.states[c] = State{};
         if constexpr (Kinematics::second_is_body)
           if (const std::int32_t slot = plan.slot[c]; slot != own_chunk) {
@@ -91,8 +121,10 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
         continue;
       }
       State next;
-      const contact::ContactForce f =
-          group.law.evaluate(motion_in<Kinematics>(group.law, placement, trial, pair, geometry), old, next);
+      const contact::ContactMotion motion =
+          motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+      const contact::ContactForce f = group.law.evaluate(motion, old, next);
+      if constexpr (Observer::looks) observer.see(chunk, group.law, motion, old, next);
       if constexpr (commit) group.states[c] = next;
       const contact::EndForces ends = contact::end_forces(geometry, f);
       sum.force[pair.a] += ends.force_a;
@@ -112,8 +144,8 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
   for_chunks(std::ssize(sum.force), chunk_size_, one_chunk);
 }
 
-template <bool turns, bool commit, class ModelRef>
-void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum) {
+template <bool turns, bool commit, class ModelRef, class Observer>
+void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum, Observer& observer) {
   EIGENGRAIN_ASSERT(plans_.size() == model.contacts.groups.size(), plans_.size());
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   sum.force.assign(bodies, Vec3::Zero());
@@ -121,7 +153,7 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   const contact::Placement placement = model.placement(trial.position);
   auto plan = plans_.begin();
   model.contacts.for_each_group(
-      [&](auto& group) { sum_group<turns, commit>(*plan++, group, placement, trial, sum); });
+      [&](auto& group) { sum_group<turns, commit>(*plan++, group, placement, trial, sum, observer); });
   add_foreign(sum);
 }
 
@@ -136,17 +168,29 @@ void ContactForceSum::add_foreign(BodyForces& sum) const {
 }
 
 void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForces& sum) {
+  Unobserved nobody;
   if (turns_)
-    sum_groups<true, false>(model, trial, sum);
+    sum_groups<true, false>(model, trial, sum, nobody);
   else
-    sum_groups<false, false>(model, trial, sum);
+    sum_groups<false, false>(model, trial, sum, nobody);
 }
 
-void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum) {
-  if (turns_)
-    sum_groups<true, true>(model, trial, sum);
-  else
-    sum_groups<false, true>(model, trial, sum);
+void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum,
+                              contact::Dissipation* dissipated) {
+  const auto with = [&](auto& observer) {
+    if (turns_)
+      sum_groups<true, true>(model, trial, sum, observer);
+    else
+      sum_groups<false, true>(model, trial, sum, observer);
+  };
+  if (dissipated == nullptr) {
+    Unobserved nobody;
+    with(nobody);
+  } else {
+    DissipationObserver observer((model.bodies.size() + chunk_size_ - 1) / chunk_size_);
+    with(observer);
+    *dissipated += observer.total();
+  }
 }
 
 BodyForces contact_forces(const Model& model, const Displacement& displacement) {

@@ -118,6 +118,11 @@ void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::list, "skin", state.list.skin);
   file.set(layout::list, "rebuilds", state.list.rebuilds);
   file.write(layout::list_position, state.list.position);
+  if (!state.ledger) return;
+  file.add_group(layout::ledger);
+  layout::for_each_energy(*state.ledger, [&](const std::string& name, double energy) {
+    file.set(layout::ledger, name.c_str(), energy);
+  });
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "eigengrain/contact/dissipation.hpp"
 #include "eigengrain/contact/law_table.hpp"
 #include "eigengrain/contact/laws.hpp"
 
@@ -190,6 +191,32 @@ TYPED_TEST(LawContract, EnergyIsTheWorkOfTheForce) {
       const double minus = law.energy(moved(n, 0.5, delta - h * Vec3::Unit(k)), old);
       EXPECT_NEAR(-(plus - minus) / (2 * h), force[k], 1e-9);
     }
+  });
+}
+
+// At constant overlap the trapezoidal rule is exact for springs and slip: what the contact stores and
+// dissipates is the work done on it.
+TYPED_TEST(LawContract, DissipatesTheRestOfTheWork) {
+  using State = typename TypeParam::State;
+  std::mt19937_64 random(5);
+  this->for_each_specimen([&](const TypeParam& law) {
+    for (const double size : {0.001, 0.05, 0.5})
+      for (int k = 0; k < 20; ++k) {
+        const Vec3 n = test::random_vector(random).normalized();
+        const auto old = sheared(law, n, 0.5, random);
+        const ContactMotion motion = moved(n, 0.5, size * n.cross(test::random_vector(random)));
+        const ContactMotion rest = moved(n, 0.5, Vec3::Zero());
+        State next;
+        State same;
+        const Vec3 before = law.evaluate(rest, old, same).force;
+        const Vec3 after = law.evaluate(motion, old, next).force;
+        double lost = 0;
+        if constexpr (DissipativeLaw<TypeParam>) lost = law.dissipation(motion, old, next).slip;
+        const double stored = law.energy(rest, next) - law.energy(rest, old);
+        // Energies of order one, a few ulps each.
+        EXPECT_NEAR(stored + lost, -0.5 * (before + after).dot(motion.displacement), 5e-15);
+        EXPECT_GE(lost, 0);
+      }
   });
 }
 

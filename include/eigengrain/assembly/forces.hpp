@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/contact/dissipation.hpp"
 
 #include <cstdint>
 #include <span>
@@ -57,8 +58,9 @@ class ContactForceSum {
   /// Forces after a trial displacement. Nothing is stored in the contacts: the same call with the same
   /// displacement gives the same forces.
   void evaluate(const Model& model, const Trial& trial, BodyForces& sum);
-  /// The same, and the contacts remember: the trial displacement becomes the committed state.
-  void advance(Model& model, const Trial& trial, BodyForces& sum);
+  /// The same, and the contacts remember: the trial displacement becomes the committed state. What they
+  /// dissipate on the way is added to `dissipated` if it is given; if not, it is not computed.
+  void advance(Model& model, const Trial& trial, BodyForces& sum, contact::Dissipation* dissipated = nullptr);
 
  private:
   /// A group's contacts by chunk of their first body, and where each puts its force on a body elsewhere.
@@ -68,11 +70,12 @@ class ContactForceSum {
   };
   static constexpr std::int32_t own_chunk = -1;
 
-  template <bool turns, bool commit, class ModelRef>
-  void sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum);
-  template <bool turns, bool commit, class Group>
+  /// Observers see each contact's motion with its old and its new state.
+  template <bool turns, bool commit, class ModelRef, class Observer>
+  void sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum, Observer& observer);
+  template <bool turns, bool commit, class Group, class Observer>
   void sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement, const Trial& trial,
-                 BodyForces& sum);
+                 BodyForces& sum, Observer& observer);
   void add_foreign(BodyForces& sum) const;
 
   std::int64_t chunk_size_ = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/contact/dissipation.hpp"
 #include "eigengrain/contact/law.hpp"
 #include "eigengrain/contact/shear_transport.hpp"
 
@@ -93,6 +94,18 @@ class Linear {
     evaluate(motion, old, next);
     const double normal = 0.5 * params_.kn * motion.overlap * motion.overlap;
     return params_.ks > 0 ? normal + 0.5 * next.shear.squaredNorm() / params_.ks : normal;
+  }
+
+  /// ½ (F_s,old + F_s,new)·(F_s,trial - F_s,new)/k_s, F_s,old carried: the mean shear force on the way that
+  /// slips. Where the contact opens F_s,new is zero, and what was stored is lost.
+  Dissipation dissipation(const ContactMotion& motion, const State& old, const State& next) const {
+    if (params_.ks <= 0 || !old.formed()) return {};
+    const Vec3 trial = trial_shear(motion, old);
+    const Vec3 slipped = trial - next.shear;
+    if (slipped.isZero(0)) return {};
+    const Vec3& n = motion.normal;
+    const Vec3 carried = trial + params_.ks * (motion.displacement - motion.displacement.dot(n) * n);
+    return {.slip = 0.5 * (carried + next.shear).dot(slipped) / params_.ks};
   }
 
   // What scene files say.
