@@ -70,6 +70,12 @@ int run_program(int argc, char** argv) {
   Options options;
   add_verb(program, "check", "read a scene, report every mistake, say what the model will consist of",
            options, check);
+  add_verb(program, "measure", "stress, strain rate, porosity and fabric of regions", options, measure)
+      ->add_option("--region", options.regions,
+                   "a region instead of those of the scene, e.g. \"name: middle, sphere: {centre: [0, 0, "
+                   "0.1], radius: 50 mm}\"; may be repeated")
+      ->type_name("KEYS")
+      ->allow_extra_args(false);
   add_output(*add_verb(program, "run", "the explicit cycle, to the end that the scene names", options, run),
              options);
 #ifdef EIGENGRAIN_PETSC

@@ -4,6 +4,8 @@
 #include "eigengrain/assembly/energies.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/io/state_file.hpp"
+#include "eigengrain/measures/ledger.hpp"
+#include "eigengrain/measures/measure.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -29,6 +31,8 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
     values.unbalanced = {b.mean, b.max};
   }
   if (history.walls) values.wall_forces = assembly::wall_forces(state.model);
+  if (history.ledger) values.ledger = measures::ledger_of(state);
+  if (!history.measures.empty()) values.regions = measures::measure(state.model, history.measures);
   return values;
 }
 
@@ -38,7 +42,7 @@ RunOutputs::RunOutputs(const Input& input)
     : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
   const std::int64_t step = input.state.step;
   if (choice_.series_every > 0) {
-    series_.emplace(input.folder, input.stem);
+    series_.emplace(input.folder, input.stem, choice_.series_stress);
     if (input.continued && std::filesystem::exists(series_->list_file())) series_->continue_from(step);
   }
   for (model::History history : input.state.settings.histories) {

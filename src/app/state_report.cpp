@@ -1,6 +1,7 @@
 #include "state_report.hpp"
 
 #include "eigengrain/assembly/energies.hpp"
+#include "eigengrain/measures/ledger.hpp"
 
 #include "text.hpp"
 
@@ -22,6 +23,18 @@ void add_balance(nlohmann::ordered_json& report, const assembly::Balance& balanc
 void add_energies(nlohmann::ordered_json& report, const assembly::State& state) {
   const assembly::Energies e = assembly::energies_of(state);
   report["energies"] = {{"kinetic", e.kinetic}, {"elastic", e.elastic}, {"gravitational", e.gravitational}};
+}
+
+void add_ledger(nlohmann::ordered_json& report, const assembly::State& state) {
+  const measures::Ledger ledger = measures::ledger_of(state);
+  nlohmann::ordered_json all{{"kinetic", ledger.kinetic},
+                             {"elastic_normal", ledger.elastic.normal},
+                             {"elastic_shear", ledger.elastic.shear},
+                             {"gravitational", ledger.gravitational}};
+  for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
+    all[std::string(integral.name)] = integral.of(ledger.integrals);
+  all["balance_error"] = ledger.balance_error;
+  report["ledger"] = all;
 }
 
 std::string balance_text(const assembly::Balance& balance) {

@@ -38,6 +38,44 @@ void add_vector(std::vector<std::string>& names, const std::string& prefix, std:
   for (const char axis : axes) names.push_back(fmt::format("{}{} [{}]", prefix, axis, unit));
 }
 
+/// Components of a symmetric tensor in the order of its columns.
+struct Component {
+  const char* name;
+  int row;
+  int column;
+};
+constexpr std::array<Component, 6> components{
+    {{"xx", 0, 0}, {"yy", 1, 1}, {"zz", 2, 2}, {"xy", 0, 1}, {"xz", 0, 2}, {"yz", 1, 2}}};
+
+void add_tensor(std::vector<std::string>& names, const std::string& prefix, std::string_view unit) {
+  for (const Component& c : components)
+    names.push_back(fmt::format("{} {}{}", prefix, c.name, unit.empty() ? "" : fmt::format(" [{}]", unit)));
+}
+
+void add_region(std::vector<std::string>& names, const std::string& region) {
+  for (const char* what : {"porosity", "coordination", "coordination without rattlers", "sliding"})
+    names.push_back(fmt::format("{} {}", region, what));
+  add_tensor(names, region + " stress", "Pa");
+  add_tensor(names, region + " strain rate", "1/s");
+  add_tensor(names, region + " fabric", "");
+}
+
+/// "gravity_work" -> "gravity work [J]"
+std::string energy_column(std::string_view name) {
+  std::string text(name);
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text + " [J]";
+}
+
+void add_ledger(std::vector<std::string>& names) {
+  for (const char* name :
+       {"ledger kinetic [J]", "elastic normal [J]", "elastic shear [J]", "ledger gravitational [J]"})
+    names.emplace_back(name);
+  for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
+    names.push_back(energy_column(integral.name));
+  names.emplace_back("balance error [J]");
+}
+
 std::vector<std::string> column_names(const model::History& history, std::span<const model::Plane> walls) {
   std::vector<std::string> names{"step", "time [s]"};
   if (history.energies)
@@ -46,6 +84,8 @@ std::vector<std::string> column_names(const model::History& history, std::span<c
     for (const char* name : {"unbalanced mean", "unbalanced max"}) names.emplace_back(name);
   if (history.walls)
     for (const model::Plane& wall : walls) add_vector(names, wall.name + " force ", "N");
+  if (history.ledger) add_ledger(names);
+  for (const model::Region& region : history.measures) add_region(names, region.name);
   for (const std::int64_t ball : history.balls) {
     const std::string prefix = fmt::format("ball {} ", ball);
     add_vector(names, prefix, "m");
@@ -62,6 +102,28 @@ void put(std::string& line, double value) {
 
 void put(std::string& line, const Vec3& value) {
   for (int k = 0; k < 3; ++k) put(line, value[k]);
+}
+
+/// The symmetric part.
+void put(std::string& line, const Mat3& value) {
+  for (const Component& c : components) put(line, 0.5 * (value(c.row, c.column) + value(c.column, c.row)));
+}
+
+void put(std::string& line, const measures::Ledger& ledger) {
+  for (const double energy :
+       {ledger.kinetic, ledger.elastic.normal, ledger.elastic.shear, ledger.gravitational})
+    put(line, energy);
+  for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
+    put(line, integral.of(ledger.integrals));
+  put(line, ledger.balance_error);
+}
+
+void put(std::string& line, const measures::Measure& m) {
+  for (const double value : {m.porosity, m.fabric.coordination, m.fabric.without_rattlers, m.fabric.sliding})
+    put(line, value);
+  put(line, m.stress);
+  put(line, m.strain_rate().value_or(Mat3::Constant(measures::nothing)));
+  put(line, m.fabric.tensor);
 }
 
 /// The step that a line begins with.
@@ -173,6 +235,9 @@ std::string HistoryFile::line(const assembly::State& state, const HistoryValues&
     EIGENGRAIN_ASSERT(values.wall_forces.size() == walls_, values.wall_forces.size(), walls_);
     for (const Vec3& force : values.wall_forces) put(text, force);
   }
+  if (history_.ledger) put(text, values.ledger);
+  EIGENGRAIN_ASSERT(values.regions.size() == history_.measures.size(), values.regions.size());
+  for (const measures::Measure& measure : values.regions) put(text, measure);
   const model::Bodies& bodies = state.model.bodies;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const std::size_t row = rows_[k] = row_of(history_.balls[k], rows_[k], bodies);

@@ -59,8 +59,8 @@ void take(std::string_view& text, std::string_view expected) {
 
 }  // namespace
 
-Series::Series(std::filesystem::path folder, std::string stem)
-    : folder_(std::move(folder)), stem_(std::move(stem)) {}
+Series::Series(std::filesystem::path folder, std::string stem, bool stress)
+    : folder_(std::move(folder)), stem_(std::move(stem)), stress_(stress) {}
 
 std::vector<std::int64_t> Series::steps() const {
   std::vector<std::int64_t> steps;
@@ -90,7 +90,7 @@ void Series::add(const assembly::State& state) {
   EIGENGRAIN_ASSERT(frames_.empty() || frames_.back().step < state.step, state.step);
   const std::filesystem::path file = frame_file(state.step);
   make_folder(file.parent_path());
-  write_frame(file, state);
+  write_frame(file, state, stress_);
   frames_.push_back({state.step, state.time});
   write_list();
 }
