@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/forces.hpp"
 
+#include "eigengrain/assembly/dissipation.hpp"
 #include "eigengrain/assembly/state.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/assert.hpp"
@@ -112,11 +113,6 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const model
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using ContactState = typename std::decay_t<Group>::State;
   using Law = typename std::decay_t<Group>::LawType;
-  if constexpr (commit && std::is_same_v<Kinematics, contact::BallFacet>)
-    for_chunks(std::ssize(sum.force), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
-      contact::follow_facets(placement, group, static_cast<std::size_t>(plan.starts[chunk]),
-                             static_cast<std::size_t>(plan.starts[chunk + 1]));
-    });
   const auto contacts_of = [&](std::int64_t chunk) {
     for (std::int64_t index = plan.starts[chunk]; index < plan.starts[chunk + 1]; ++index) {
       const auto c = static_cast<std::size_t>(index);
@@ -203,8 +199,24 @@ void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForce
     sum_groups<false, false>(model, trial, sum);
 }
 
-void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum) {
+void ContactForceSum::follow_facets(Model& model, const contact::Placement& placement) const {
+  auto plan = plans_.begin();
+  model.contacts.for_each_group([&](auto& group) {
+    const GroupPlan& of_group = *plan++;
+    if constexpr (std::is_same_v<typename std::decay_t<decltype(group)>::KinematicsType, contact::BallFacet>)
+      for_chunks(model.bodies.size(), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
+        contact::follow_facets(placement, group, static_cast<std::size_t>(of_group.starts[chunk]),
+                               static_cast<std::size_t>(of_group.starts[chunk + 1]));
+      });
+  });
+}
+
+void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum,
+                              contact::Dissipation* dissipated) {
   try {
+    const contact::Placement placement = placement_in(model, trial);
+    follow_facets(model, placement);
+    if (dissipated != nullptr) *dissipated += dissipation_in(model, placement, trial);
     if (turns_)
       sum_groups<true, true>(model, trial, sum);
     else
@@ -218,7 +230,8 @@ void renew_forces(State& state) {
   const model::Bodies& bodies = state.model.bodies;
   BodyForces sum;
   ContactForceSum contacts(state.model, state.turns());
-  contacts.advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation}, sum);
+  contacts.advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation},
+                   sum);
   note_breaks(state, contacts.broken());
   state.force = std::move(sum.force);
   state.moment = std::move(sum.moment);

@@ -157,8 +157,8 @@ class GroupReader {
     }
   }
 
-  /// The parts of the history that the file has (`stored`, by name); a part of the law that has come on since,
-  /// such as a dashpot, keeps what it starts with.
+  /// The parts of the history that the file has (`stored`, by name); a part of the law that has come on
+  /// since, such as a dashpot, keeps what it starts with.
   template <class Group>
   void read_states(Group& group, const std::vector<std::string>& stored) const {
     if constexpr (!std::is_empty_v<typename Group::State>) {
