@@ -2,6 +2,8 @@
 
 #include "eigengrain/base/parallel.hpp"
 
+#include "flat.hpp"
+
 #include <cstdint>
 #include <type_traits>
 #include <vector>
@@ -76,11 +78,19 @@ contact::Dissipation dissipation_in(const Model& model, const contact::Placement
     if constexpr (loses_energy<typename std::decay_t<decltype(group)>::LawType>) {
       std::vector<contact::Dissipation> parts(
           static_cast<std::size_t>((group.size() + chunk_size - 1) / chunk_size));
-      for_chunks(group.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
-        contact::Dissipation& part = parts[static_cast<std::size_t>(chunk)];
+      const auto of_chunk = [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+        contact::Dissipation part;
         for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c)
           part += of_contact(group, c, placement, trial);
-      });
+        parts[static_cast<std::size_t>(chunk)] = part;
+      };
+      using Group = std::decay_t<decltype(group)>;
+      if constexpr (Group::KinematicsType::second_is_body && !contact::BondLaw<typename Group::LawType>)
+        for_chunks(group.size(), chunk_size,
+                   [&](std::int64_t begin, std::int64_t end, std::int64_t chunk)
+                       EIGENGRAIN_FLAT { of_chunk(begin, end, chunk); });
+      else
+        for_chunks(group.size(), chunk_size, of_chunk);
       for (const contact::Dissipation& part : parts) total += part;
     }
   });

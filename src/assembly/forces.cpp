@@ -8,16 +8,12 @@
 #include "eigengrain/contact/facet_choice.hpp"
 #include "eigengrain/contact/orientation.hpp"
 
+#include "flat.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <type_traits>
 #include <utility>
-
-#ifdef __SANITIZE_ADDRESS__
-#define EIGENGRAIN_FLAT
-#else
-#define EIGENGRAIN_FLAT __attribute__((flatten))
-#endif
 
 namespace eigengrain::assembly {
 namespace {
@@ -152,9 +148,7 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const model
     }
   };
   if constexpr (commit && contact::BondLaw<Law>) broken_in_chunk_.resize(plan.starts.size());
-  // The cycle's contacts of balls, which are nearly all there are, in one flat piece: the small functions of
-  // kinematics and laws are many, and calls among them pass everything through memory. It takes the compiler
-  // long, and under sanitizers hundreds of megabytes.
+  // The cycle's contacts of balls, which are nearly all there are, in one flat piece.
   if constexpr (commit && Kinematics::second_is_body)
     for_chunks(std::ssize(sum.force), chunk_size_,
                [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT { contacts_of(chunk); });
