@@ -35,7 +35,7 @@ Vec3 damped_moment(const Vec3& moment, const Quat& axes, const Vec3& inertia, co
   const Quat orientation = round ? Quat(Quat::Identity()) : axes;
   Vec3 own = orientation.conjugate() * moment;
   const Vec3 turning = orientation.conjugate() * momentum;
-  for (int k = 0; k < 3; ++k) own[k] = damped(own[k], turning[k], damping);
+  for (int k = 0; k < 3; ++k) own[k] += assembly::local_damping_force(own[k], turning[k], damping);
   return orientation * own;
 }
 
@@ -49,7 +49,9 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
 
   const double mass = clumps.mass[c];
   Vec3& velocity = clumps.velocity[c];
-  kick(velocity, contacts.force + mass * state.model.gravity, mass, duration, damping, fixed.translation());
+  NoWork none(0, 0);  // scenes with clumps have no ledger
+  kick(velocity, contacts.force + mass * state.model.gravity, mass, duration, damping, fixed.translation(),
+       none);
   clumps.position[c] += dt * velocity;
 
   FreeRotation rotation;

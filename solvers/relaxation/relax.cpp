@@ -269,6 +269,7 @@ class Relaxation {
 }  // namespace
 
 RelaxResult relax(State& state, const RelaxOptions& options) {
+  state.ledger.reset();  // the way to an equilibrium is not one in time
   return Relaxation(state, options).run();
 }
 

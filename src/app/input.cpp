@@ -19,7 +19,7 @@ namespace {
 /// Whether an override may change what the step rests upon, so that it has to be chosen anew. Without one, a
 /// run goes on with the step that it had, to the bit.
 bool touches_the_step(const std::string& override_text) {
-  constexpr std::array<std::string_view, 3> harmless{"run", "outputs", "histories"};
+  constexpr std::array<std::string_view, 4> harmless{"run", "outputs", "histories", "measures"};
   return std::none_of(harmless.begin(), harmless.end(),
                       [&](std::string_view key) { return override_text.starts_with(key); });
 }
@@ -47,8 +47,10 @@ Input read_input(const Options& options) {
   input.state = input.continued ? io::read_state(file, options.overrides)
                                 : cycle::start(io::read_scene(file, options.overrides));
   const auto& overrides = options.overrides;
-  if (input.continued && std::any_of(overrides.begin(), overrides.end(), touches_the_step))
+  if (input.continued && std::any_of(overrides.begin(), overrides.end(), touches_the_step)) {
     input.state.next_dt = 0;
+    input.state.ledger.reset();  // another model has another energy
+  }
   return input;
 }
 

@@ -5,6 +5,8 @@
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/io/state_file.hpp"
+#include "eigengrain/measures/ledger.hpp"
+#include "eigengrain/measures/measure.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -35,6 +37,8 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
       values.wall_moments.push_back(load.moment);
     }
   if (history.wall_positions) values.wall_positions = assembly::wall_centres(state.model);
+  if (history.ledger) values.ledger = measures::ledger_of(state);
+  if (!history.measures.empty()) values.regions = measures::measure(state.model, history.measures);
   return values;
 }
 
@@ -44,7 +48,7 @@ RunOutputs::RunOutputs(const Input& input)
     : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
   const std::int64_t step = input.state.step;
   if (choice_.series_every > 0) {
-    series_.emplace_back(input.folder, input.stem);
+    series_.emplace_back(input.folder, input.stem, io::Series::Of::balls, choice_.series_stress);
     if (!input.state.model.surfaces.empty())
       series_.emplace_back(input.folder, input.stem + "_walls", io::Series::Of::surfaces);
     for (io::Series& series : series_)

@@ -5,6 +5,7 @@
 #include "eigengrain/cycle/cycle.hpp"
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/cycle/watch.hpp"
+#include "eigengrain/measures/ledger.hpp"
 
 #include "input.hpp"
 #include "interrupt.hpp"
@@ -191,11 +192,23 @@ class Run {
   std::int64_t broken_ = 0;  ///< bonds, in this call
 };
 
+/// A ledger is kept while a table asks for it. One that a state brings along goes on.
+void attend_ledger(State& state) {
+  const auto& tables = state.settings.histories;
+  const bool wanted =
+      std::any_of(tables.begin(), tables.end(), [](const model::History& table) { return table.ledger; });
+  if (!wanted)
+    state.ledger.reset();
+  else if (!state.ledger)
+    measures::begin_ledger(state);
+}
+
 }  // namespace
 
 void run(const Options& options) {
   Input input = read_input(options);
   print_notes(input.state.settings);
+  attend_ledger(input.state);
   Run run(std::move(input));
   if (const std::string warning = warning_of(run.verdict()); !warning.empty())
     fmt::print(stderr, "{}\n", warning);
@@ -212,6 +225,7 @@ void run(const Options& options) {
                                 {"lists", state.list.rebuilds}};
   add_balance(report, balance);
   add_energies(report, state);
+  if (state.ledger) add_ledger(report, state);
   const std::int64_t bonds = assembly::count_bonds(state.model);
   if (bonds > 0 || run.broken() > 0) report["bonds"] = {{"intact", bonds}, {"broken", run.broken()}};
   report["state"] = run.outputs().state_file().string();

@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/forces.hpp"
 
+#include "eigengrain/assembly/dissipation.hpp"
 #include "eigengrain/assembly/state.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/assert.hpp"
@@ -7,16 +8,12 @@
 #include "eigengrain/contact/facet_choice.hpp"
 #include "eigengrain/contact/orientation.hpp"
 
+#include "flat.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <type_traits>
 #include <utility>
-
-#ifdef __SANITIZE_ADDRESS__
-#define EIGENGRAIN_FLAT
-#else
-#define EIGENGRAIN_FLAT __attribute__((flatten))
-#endif
 
 namespace eigengrain::assembly {
 namespace {
@@ -112,11 +109,6 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const model
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using ContactState = typename std::decay_t<Group>::State;
   using Law = typename std::decay_t<Group>::LawType;
-  if constexpr (commit && std::is_same_v<Kinematics, contact::BallFacet>)
-    for_chunks(std::ssize(sum.force), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
-      contact::follow_facets(placement, group, static_cast<std::size_t>(plan.starts[chunk]),
-                             static_cast<std::size_t>(plan.starts[chunk + 1]));
-    });
   const auto contacts_of = [&](std::int64_t chunk) {
     for (std::int64_t index = plan.starts[chunk]; index < plan.starts[chunk + 1]; ++index) {
       const auto c = static_cast<std::size_t>(index);
@@ -156,9 +148,7 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const model
     }
   };
   if constexpr (commit && contact::BondLaw<Law>) broken_in_chunk_.resize(plan.starts.size());
-  // The cycle's contacts of balls, which are nearly all there are, in one flat piece: the small functions of
-  // kinematics and laws are many, and calls among them pass everything through memory. It takes the compiler
-  // long, and under sanitizers hundreds of megabytes.
+  // The cycle's contacts of balls, which are nearly all there are, in one flat piece.
   if constexpr (commit && Kinematics::second_is_body)
     for_chunks(std::ssize(sum.force), chunk_size_,
                [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT { contacts_of(chunk); });
@@ -203,8 +193,24 @@ void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForce
     sum_groups<false, false>(model, trial, sum);
 }
 
-void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum) {
+void ContactForceSum::follow_facets(Model& model, const contact::Placement& placement) const {
+  auto plan = plans_.begin();
+  model.contacts.for_each_group([&](auto& group) {
+    const GroupPlan& of_group = *plan++;
+    if constexpr (std::is_same_v<typename std::decay_t<decltype(group)>::KinematicsType, contact::BallFacet>)
+      for_chunks(model.bodies.size(), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
+        contact::follow_facets(placement, group, static_cast<std::size_t>(of_group.starts[chunk]),
+                               static_cast<std::size_t>(of_group.starts[chunk + 1]));
+      });
+  });
+}
+
+void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum,
+                              contact::Dissipation* dissipated) {
   try {
+    const contact::Placement placement = placement_in(model, trial);
+    follow_facets(model, placement);
+    if (dissipated != nullptr) *dissipated += dissipation_in(model, placement, trial);
     if (turns_)
       sum_groups<true, true>(model, trial, sum);
     else

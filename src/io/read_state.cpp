@@ -174,6 +174,14 @@ void read_walls(const h5::File& hdf5, const fs::path& file, assembly::State& sta
   assembly::place_walls(state);
 }
 
+/// An integral that the file does not know yet began at zero when its program did.
+void read_ledger(const h5::File& hdf5, assembly::State& state) {
+  if (!hdf5.has(layout::ledger)) return;
+  layout::for_each_energy(state.ledger.emplace(), [&](const std::string& name, double& energy) {
+    if (hdf5.has_attribute(layout::ledger, name.c_str())) energy = hdf5.number(layout::ledger, name.c_str());
+  });
+}
+
 /// Overrides may not pull away what the stored numbers rest upon.
 void refuse_changes(const model::Scene& stored, const model::Scene& now, const fs::path& file) {
   if (now.materials.size() != stored.materials.size())
@@ -263,6 +271,7 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   read_bodies(hdf5, state);
   read_clumps(hdf5, state);
   read_list(hdf5, state);
+  read_ledger(hdf5, state);
   const std::string document = hdf5.read_text(layout::settings);
   const model::Scene stored = read_settings(document, file, {}, state.model.bodies);
   state.settings = read_settings(document, file, overrides, state.model.bodies);

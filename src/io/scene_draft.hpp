@@ -44,11 +44,12 @@ struct SceneDraft {
   bool contacts_complete = true;  ///< no entry was left out because of a mistake
   bool balls_complete = true;     ///< neither was a ball
   bool walls_complete = true;     ///< nor a wall
+  bool measures_complete = true;  ///< nor a region
 };
 
 /// One function for each section of the scene; each reads its own keys only. Those that use the materials
 /// come after read_materials, read_balls and read_walls after read_periodic and read_planar, read_histories
-/// after both.
+/// after both and after read_measures.
 void read_materials(const Section& root, SceneDraft& draft);
 void read_periodic(const Section& root, SceneDraft& draft);
 void read_planar(const Section& root, SceneDraft& draft);
@@ -61,6 +62,7 @@ void read_gravity(const Section& root, SceneDraft& draft);
 void read_damping(const Section& root, SceneDraft& draft);
 void read_timestep(const Section& root, SceneDraft& draft);
 void read_run(const Section& root, SceneDraft& draft);
+void read_measures(const Section& root, SceneDraft& draft);
 void read_histories(const Section& root, SceneDraft& draft);
 void read_outputs(const Section& root, SceneDraft& draft);
 

@@ -31,6 +31,7 @@ void read_sections(const Section& root, SceneDraft& draft, const TakeBalls& take
   read_damping(root, draft);
   read_timestep(root, draft);
   read_run(root, draft);
+  read_measures(root, draft);
   read_histories(root, draft);
   read_outputs(root, draft);
 }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 /// What stands where in a state file (docs/state-file.md), for the writer and the reader.
 namespace eigengrain::io::layout {
@@ -33,6 +34,7 @@ inline const std::string moment = "/bodies/moment";
 inline const std::string clumps = "/clumps";
 inline const std::string contacts = "/contacts";
 inline const std::string list = "/neighbour_list";
+inline const std::string ledger = "/ledger";
 inline const std::string list_position = "/neighbour_list/position";
 inline const std::string list_wall_lever = "/neighbour_list/wall_lever";
 inline const std::string surfaces = "/surfaces";
@@ -82,6 +84,17 @@ void for_each_number(State& state, const Visit& visit) {
   visit("step", state.step);
   visit("dt", state.dt);
   visit("next_dt", state.next_dt);
+}
+
+/// The numbers of an energy ledger.
+template <class Ledger, class Visit>
+void for_each_energy(Ledger& all, const Visit& visit) {
+  visit("initial", all.initial);
+  for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
+    if constexpr (std::is_const_v<Ledger>)
+      visit(std::string(integral.name), integral.of(all.integrals));
+    else
+      visit(std::string(integral.name), integral.in(all.integrals));
 }
 
 inline std::string group(std::int64_t k) {

@@ -165,6 +165,11 @@ void write_contents(const assembly::State& state, h5::File& file) {
     file.add_group(layout::surfaces);
     file.write(layout::surface_fingerprint, fingerprints(state.model.surfaces));
   }
+  if (!state.ledger) return;
+  file.add_group(layout::ledger);
+  layout::for_each_energy(*state.ledger, [&](const std::string& name, double energy) {
+    file.set(layout::ledger, name.c_str(), energy);
+  });
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: glass}]
 RUN = """
 run: {steps: 400}
 outputs: {checkpoint: 100, series: 100}
-histories: [{file: column.csv, every: 50, of: [energies, unbalanced, walls], balls: [2]}]
+measures: [{name: all}]
+histories: [{file: column.csv, every: 50, of: [energies, unbalanced, walls, ledger], measures: all, balls: [2]}]
 """
 # Three balls hang on each other. The upper bond carries two weights, 327 Pa, and more while they swing.
 CHAIN = """
@@ -95,7 +96,7 @@ class Runs(unittest.TestCase):
         self.succeed("run", scene, "--output", self.folder / "parts", "--set", "run.steps=200")
         _, parts = self.succeed("run", self.folder / "parts" / "column.h5", "--set", "run.steps=400", "--threads", 2)
         self.assertEqual(parts["steps"], 200)
-        for key in ("step", "time", "dt", "unbalanced", "energies"):
+        for key in ("step", "time", "dt", "unbalanced", "energies", "ledger"):
             self.assertEqual(whole[key], parts[key], key)
         for file in ("column.csv", "column.pvd"):
             self.assertEqual((self.folder / "whole" / file).read_text(), (self.folder / "parts" / file).read_text())

@@ -80,6 +80,9 @@ std::vector<std::string> scenes_with_room() {
   const std::string periodic = "periodic: {box: [1, 1, 1]}\n";
   const std::string fixed = "timestep: {policy: fixed, dt: 1e-5}\n";
   const std::string table = "histories: [{file: table.csv, of: unbalanced, balls: 0}]\n";
+  const std::string region = "measures: [{name: middle}]\noutputs: {series: 1000}\n";
+  const std::string sphere = "measures: [{sphere: {centre: [0, 0, 0], radius: 1}}]\n";
+  const std::string region_box = "measures: [{box: {min: [-1, -1, -1], max: [0.5, 0.5, 0.5]}}]\n";
   const std::string no_law = "contacts: [{between: [grain, grain], law: none}]\n";
   std::vector<std::string> scenes{materials + no_law + ball,
                                   materials + no_law + file + fixed,
@@ -100,7 +103,9 @@ std::vector<std::string> scenes_with_room() {
                                   materials + no_law + ball + driven,
                                   materials + no_law + ball + mesh,
                                   materials + no_law + ball + periodic,
-                                  materials + no_law + ball + table};
+                                  materials + no_law + ball + table + region,
+                                  materials + no_law + ball + sphere,
+                                  materials + no_law + ball + region_box};
   for (const contact::LawDescription& law : contact::law_descriptions()) {
     std::string needed;
     for (const KeyDescription* key : section_keys("contacts[]", law.name))

@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/bond_break.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/moving_walls.hpp"
+#include "eigengrain/contact/dissipation.hpp"
 
 #include <cstdint>
 #include <span>
@@ -84,8 +85,9 @@ class ContactForceSum {
   /// Forces after a trial displacement. Nothing is stored in the contacts: the same call with the same
   /// displacement gives the same forces.
   void evaluate(const Model& model, const Trial& trial, BodyForces& sum);
-  /// The same, and the contacts remember: the trial displacement becomes the committed state.
-  void advance(Model& model, const Trial& trial, BodyForces& sum);
+  /// The same, and the contacts remember: the trial displacement becomes the committed state. What they
+  /// dissipate on the way is added to `dissipated` if it is given; if not, it is not computed.
+  void advance(Model& model, const Trial& trial, BodyForces& sum, contact::Dissipation* dissipated = nullptr);
 
   /// Bonds that broke in the last `advance`, in the order of the contacts; steps, times and
   /// entries are left to note_breaks.
@@ -105,6 +107,8 @@ class ContactForceSum {
   void sum_group(const GroupPlan& plan, Group& group, const model::Bodies& bodies,
                  const contact::Placement& placement, const Trial& trial, BodyForces& sum);
   void add_foreign(BodyForces& sum) const;
+  /// Decides which triangles of surfaces are contacts.
+  void follow_facets(Model& model, const contact::Placement& placement) const;
 
   std::int64_t chunk_size_ = 0;
   bool turns_ = false;

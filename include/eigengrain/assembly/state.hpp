@@ -1,10 +1,12 @@
 #pragma once
 
 #include "eigengrain/assembly/bond_break.hpp"
+#include "eigengrain/assembly/ledger.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/model/scene.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,11 +31,12 @@ struct State {
   std::vector<Vec3> force;   ///< [bodies] of contacts, gravity left out, at t, N
   std::vector<Vec3> moment;  ///< [bodies] about the centres, N m; empty where nothing turns
   NeighbourList list;
-  double time = 0;                  ///< t, s
-  std::int64_t step = 0;            ///< cycles since the start
-  double dt = 0;                    ///< of the last cycle, s; 0 before the first
-  double next_dt = 0;               ///< that the timestep policy chose for the next one, s
-  std::vector<BondBreak> breaks{};  ///< bonds that broke, until somebody takes them; not in state files
+  double time = 0;                       ///< t, s
+  std::int64_t step = 0;                 ///< cycles since the start
+  double dt = 0;                         ///< of the last cycle, s; 0 before the first
+  double next_dt = 0;                    ///< that the timestep policy chose for the next one, s
+  std::vector<BondBreak> breaks{};       ///< bonds that broke, until somebody takes them; not in state files
+  std::optional<EnergyLedger> ledger{};  ///< kept only where somebody has begun it (measures/ledger.hpp)
 
   bool turns() const { return !model.bodies.spin.empty(); }
 };

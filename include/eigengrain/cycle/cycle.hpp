@@ -37,8 +37,9 @@ assembly::State start(const model::Scene& scene);
 ///                       positions, the increments v₊ Δt and the old history, which is committed at once
 ///
 /// A state that starts has Δt_old = 0: its velocity v₀ at t = 0 becomes v₀ + ½Δt a₀ at the half step, which
-/// keeps the scheme at second order. The same program gives the same bits on any number of threads, and from
-/// a state that was saved and read again.
+/// keeps the scheme at second order. A state with an energy ledger keeps it; without, nothing of it is
+/// computed. The same program gives the same bits on any number of threads, and from a state that was saved
+/// and read again.
 class Cycle {
  public:
   /// Throws InputError where the policy finds no step.
@@ -58,6 +59,7 @@ class Cycle {
  private:
   /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
   /// made, m².
+  template <class Work>
   double move(double duration, double dt);
   void list_anew();
   void choose_timestep();

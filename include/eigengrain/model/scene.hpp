@@ -3,6 +3,7 @@
 #include "eigengrain/base/vec.hpp"
 #include "eigengrain/model/bodies.hpp"
 #include "eigengrain/model/material.hpp"
+#include "eigengrain/model/region.hpp"
 #include "eigengrain/model/surface.hpp"
 #include "eigengrain/model/surroundings.hpp"
 #include "eigengrain/model/wall_motion.hpp"
@@ -68,12 +69,15 @@ struct History {
   bool wall_moments = false;        ///< moment on each wall about its centre
   bool wall_positions = false;      ///< centre of each wall
   std::vector<std::int64_t> balls;  ///< identities: position, velocity, spin
+  std::vector<Region> measures{};   ///< averages over each of these
+  bool ledger = false;              ///< of energy
 };
 
 /// What else a run writes; 0: nothing of it.
 struct OutputChoice {
   std::int64_t checkpoint_every = 10000;  ///< steps between states
   std::int64_t series_every = 0;          ///< steps between frames for ParaView
+  bool series_stress = false;             ///< frames have the mean stress of each body
 };
 
 struct Scene {
@@ -90,6 +94,7 @@ struct Scene {
   bool full_levers = false;     ///< levers of balls end at their surface, not at the contact point
   TimestepChoice timestep;
   RunChoice run;
+  std::vector<Region> measures;
   std::vector<History> histories;
   OutputChoice outputs;
   std::string document;  ///< what the file and the overrides said, without the balls, as a scene document

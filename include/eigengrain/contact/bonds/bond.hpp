@@ -34,6 +34,8 @@ concept BondLaw = ContactLaw<L> &&
   { state.bonded() } -> std::same_as<bool>;
   /// How a bond breaks under the motion; nothing where it holds, or where there is none.
   { law.failure(motion, state) } -> std::same_as<std::optional<BreakMode>>;
+  /// The same bond with strengths that nothing reaches: what it would do if it held.
+  { law.unbreakable() } -> std::same_as<L>;
 };
 
 }  // namespace eigengrain::contact

@@ -49,6 +49,8 @@ struct Cement {
     return {.radius = values[0], .kn = values[1], .ks = values[2], .tension = values[3], .shear = values[4]};
   }
 
+  Cement unbreakable() const { return {.radius = radius, .kn = kn, .ks = ks}; }
+
   double disk_radius(const BondSite& site) const { return radius * std::min(site.radius_a, site.radius_b); }
 
   /// k̄_n A, k̄_s A, twist k̄_s J, bending k̄_n I (PFC3D eq. 1.34).

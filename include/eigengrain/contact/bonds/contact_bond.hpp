@@ -75,6 +75,18 @@ class Glued {
   double energy(const ContactMotion& motion, const State& old) const {
     return holds(motion, old) ? glued_.energy(motion, old) : loose_.energy(motion, old);
   }
+  Glued unbreakable() const {
+    Glued result = *this;
+    result.tension_ = result.shear_ = std::numeric_limits<double>::infinity();
+    return result;
+  }
+  /// Of what the contact does beside its bond, which does not slip while it holds. In the step in which it
+  /// breaks springs and slip are a part of what the bond releases.
+  Dissipation dissipation(const ContactMotion& motion, const State& old, const State& next) const {
+    if (!old.bonded()) return loose_.dissipation(motion, old, next);
+    const Dissipation held = glued_.dissipation(motion, old, next);
+    return {.viscous = held.viscous};
+  }
   DampingRatios damping() const requires contact::asks_rate<Base> { return loose_.damping(); }
 
   // What scene files say.

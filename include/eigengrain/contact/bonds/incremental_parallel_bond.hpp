@@ -52,6 +52,7 @@ class IncrementalParallelBond {
 
   bool needs_rotation() const { return true; }
   static constexpr bool mid_step() { return false; }
+  IncrementalParallelBond unbreakable() const { return IncrementalParallelBond(cement_.unbreakable()); }
   /// Touching makes no bond.
   State formed(const Vec3& /*n*/) const { return {}; }
   State bond(const BondSite& site) const {

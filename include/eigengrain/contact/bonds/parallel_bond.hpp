@@ -62,6 +62,7 @@ class ParallelBond {
 
   bool needs_rotation() const { return true; }
   static constexpr bool mid_step() { return false; }
+  ParallelBond unbreakable() const { return ParallelBond(cement_.unbreakable()); }
   /// Touching makes no bond.
   State formed(const Vec3& /*n*/) const { return {}; }
   State bond(const BondSite& site) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/contact/dissipation.hpp"
 #include "eigengrain/contact/law.hpp"
 #include "eigengrain/contact/shear_transport.hpp"
 
@@ -77,7 +78,8 @@ struct Response {
 ///
 /// Springs say what F_n, k_s and the energy are (laws/linear.hpp, hertz.hpp, hysteretic.hpp): Params with
 /// `friction` and `shear` (ShearOptions); Memory, what they remember beside the shear force;
-/// and the functions used here, of the motion and the old memory.
+/// and the functions used here, of the motion and the old memory. `lost(memory)`, where they have it, is what
+/// the springs along n have turned into heat since the contact formed.
 template <class Springs>
 class Frictional {
  public:
@@ -171,6 +173,36 @@ class Frictional {
     const double normal = springs_.energy(motion, old.memory);
     if (!springs_.has_shear()) return normal;
     return normal + 0.5 * next.shear.squaredNorm() / springs_.shear(motion, old.memory).stiffness;
+  }
+
+  /// Of friction, with C = kept · carried(F_s,old), T the trial shear force and F_s,new:
+  ///
+  ///   ½ (C + F_s,new)·(T - F_s,new)/k_s      the mean shear force on the way that slips
+  ///
+  /// and, where k_s follows the overlap, what the shear spring loses as that changes. Where the contact opens
+  /// F_s,new is zero, and what was stored is lost.
+  Dissipation dissipation(const ContactMotion& motion, const State& old, const State& next) const {
+    Dissipation result;
+    if constexpr (requires { springs_.lost(next.memory); })
+      if (next.formed()) result.hysteresis = springs_.lost(next.memory) - springs_.lost(old.memory);
+    if (!springs_.has_shear()) return result;
+    const Vec3 before = old.formed() ? carried(motion, old) : Vec3(Vec3::Zero());
+    const Vec3 way = across(motion);
+    if (!acts(motion, old)) {
+      if (!before.isZero(0))
+        result.slip = 0.5 * before.dot(before / springs_.old_shear_stiffness(motion, old.memory) - way);
+      return result;
+    }
+    const ShearSprings shear = springs_.shear(motion, old.memory);
+    const Vec3 trial = trial_shear(motion, old);
+    result.slip = 0.5 * (shear.kept * before + next.shear).dot(trial - next.shear) / shear.stiffness;
+    if constexpr (Springs::shear_follows_overlap)
+      if (!before.isZero(0)) {
+        const double then = springs_.old_shear_stiffness(motion, old.memory);
+        result.slip += 0.5 * before.squaredNorm() * (1 / then - shear.kept * shear.kept / shear.stiffness) -
+                       0.5 * (1 - shear.kept) * before.dot(way);
+      }
+    return result;
   }
 
   // What scene files say.
