@@ -53,7 +53,8 @@ struct LedgerEntry {
 /// All that a ledger says, in the order of tables and JSON.
 std::vector<LedgerEntry> entries_of(const Ledger& ledger);
 
-/// Begins the ledger of a state, or begins it anew: from here on the cycle keeps it.
+/// Begins the ledger of a state, or begins it anew: from here on the cycle keeps it. Throws InputError where
+/// there are clumps.
 void begin_ledger(assembly::State& state);
 
 /// The ledger of a state, which must have begun one. Cost: about one sum of forces.
