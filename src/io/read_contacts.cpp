@@ -147,6 +147,10 @@ void read_contacts(const Section& root, SceneDraft& draft) {
     draft.contact_places.push_back(section.place());
     paths.push_back(fmt::format("{} (line {})", section.path(), section.place().line));
   }
+  draft.scene.full_levers = root.text("levers") == "surface";
+  if (draft.scene.full_levers &&
+      std::any_of(rules.begin(), rules.end(), [](const ContactRule& rule) { return rule.bond.has_value(); }))
+    root.report("levers", "surface beside bonds, which hold at the contact point; leave the key out");
 }
 
 }  // namespace eigengrain::io

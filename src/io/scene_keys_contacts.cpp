@@ -61,6 +61,15 @@ std::vector<KeyDescription> contact_keys() {
            "does not give in a contact: only the other side does; stands for `young`, `poisson`, `kn` "
            "and `ks`"},
 
+      {.path = "levers",
+       .kind = word,
+       .fallback = "contact_point",
+       .words = {"contact_point", "surface"},
+       .example = "surface",
+       .description =
+           "where the levers of balls end: at the contact point, R - U/2 from the centre; or at the "
+           "ball's surface, R, as in LAMMPS and LIGGGHTS, where the moments of a contact do not balance"},
+
       {.path = "contacts",
        .kind = section_list,
        .example = "[{between: [any, any], law: linear, kn: 1e5 N/m}]",

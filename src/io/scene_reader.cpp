@@ -24,6 +24,7 @@ void read_sections(const Section& root, SceneDraft& draft, const TakeBalls& take
   read_gravity(root, draft);
   read_materials(root, draft);
   read_periodic(root, draft);
+  read_planar(root, draft);
   read_contacts(root, draft);
   take_balls(root, draft);
   read_walls(root, draft);
@@ -107,6 +108,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   root.check_keys();
   read_sections(root, draft, read_balls);
   check_scene(root, draft);
+  check_planar(root, draft);
   take_from_materials(draft, diagnostics);
   check_placement(root, draft);
   diagnostics.throw_if_any();

@@ -71,8 +71,10 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
     found.normal = geometry.normal;
     found.force = contact::force_now(group.law, placement, pair, geometry, group.states[c]).force;
     found.b = Kinematics::second_is_body ? pair.b : ActingContact::wall;
-    found.branch = geometry.lever_a;
-    if constexpr (Kinematics::second_is_body) found.branch -= geometry.lever_b;
+    if constexpr (Kinematics::second_is_body)
+      found.branch = geometry.branch();
+    else
+      found.branch = geometry.lever_a;
     if constexpr (is_beside_law<typename Group::LawType>) {
       beside.emplace_back(pair, found);
     } else {

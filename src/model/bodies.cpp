@@ -38,6 +38,14 @@ double sphere_inertia(double radius, double mass) {
   return 0.4 * mass * radius * radius;
 }
 
+double disk_mass(double radius, double density) {
+  return std::numbers::pi * radius * radius * density;
+}
+
+double disk_inertia(double radius, double mass) {
+  return 0.5 * mass * radius * radius;
+}
+
 Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
   return {.identity = gather(bodies.identity, order),
           .position = gather(bodies.position, order),

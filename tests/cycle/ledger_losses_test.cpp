@@ -102,6 +102,8 @@ TEST(LedgerLoss, FrictionOfAnObliqueImpactClosesTheBalance) {
   for (const double dt : {0.08, 0.04, 0.02, 0.01}) {
     const Impact linear = oblique("linear", {{"kn", 1}, {"ks", 0.8}, {"friction", 0.3}}, dt);
     const Impact sticking = oblique("linear", {{"kn", 1}, {"ks", 0.8}, {"friction", 3}}, dt);
+    const Impact projected =
+        oblique("linear", {{"kn", 1}, {"ks", 0.8}, {"friction", 0.3}, {"projected", 1}}, dt);
     const Impact hertz =
         oblique("hertz", {{"effective_young", 30}, {"effective_shear", 8}, {"friction", 0.3}}, dt);
     const Impact all = oblique("hertz",
@@ -118,7 +120,7 @@ TEST(LedgerLoss, FrictionOfAnObliqueImpactClosesTheBalance) {
     EXPECT_GT(linear.slip, 0.1);
     EXPECT_GT(sticking.slip, 1e-3);
     EXPECT_GT(hertz.slip, 0.1);
-    for (const double error : {linear.error, sticking.error, hertz.error, all.error})
+    for (const double error : {linear.error, sticking.error, projected.error, hertz.error, all.error})
       EXPECT_LT(error, allowed_error(dt));
   }
 }

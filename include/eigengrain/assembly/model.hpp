@@ -20,8 +20,9 @@ struct Model {
   std::vector<model::WallMotion> wall_motions;        ///< of those that move
   std::vector<model::WallPose> wall_poses;            ///< [wall_motions] where these are now
   model::PeriodicCell cell;
-  Vec3 gravity = Vec3::Zero();  ///< m/s²
-  double local_damping = 0;     ///< α
+  Vec3 gravity = Vec3::Zero();                   ///< m/s²
+  double local_damping = 0;                      ///< α
+  double lever_cut = contact::to_contact_point;  ///< of the overlap, from the levers of contacts
   contact::Contacts contacts;
 
   /// Walls of all kinds: planes, then surfaces.
@@ -41,6 +42,7 @@ struct Model {
             .mass = bodies.mass,
             .facets = &facets,
             .surfaces = surface_places,
+            .lever_cut = lever_cut,
             .orientation = orientation};
   }
 };

@@ -54,6 +54,7 @@ struct Placement {
   const model::Facets* facets = nullptr;  ///< of all surfaces
   std::span<const SurfacePlace> surfaces{};
   std::span<const SurfacePlace> middle_surfaces{};  ///< in the middle of the step; empty where none moves
+  double lever_cut = to_contact_point;              ///< of the overlap, from the levers
   std::span<const Quat> orientation{};  ///< [bodies] or empty; a trial orientation where position is one
 };
 
@@ -66,7 +67,7 @@ struct BallBall {
   static Mat3 curvature(const Placement& /*placement*/, const Pair& /*pair*/,
                         const ContactGeometry& geometry) {
     const Vec3& n = geometry.normal;
-    return (Mat3::Identity() - n * n.transpose()) / (geometry.lever_a - geometry.lever_b).dot(n);
+    return (Mat3::Identity() - n * n.transpose()) / geometry.branch().dot(n);
   }
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
@@ -78,7 +79,8 @@ struct BallBall {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto b = static_cast<std::size_t>(pair.b);
     return ball_ball(placement.position[a] - back_a, placement.radius[a],
-                     placement.position[b] + placement.cell.shift(pair.image) - back_b, placement.radius[b]);
+                     placement.position[b] + placement.cell.shift(pair.image) - back_b, placement.radius[b],
+                     placement.lever_cut);
   }
 };
 
@@ -94,14 +96,16 @@ struct BallPlane {
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
     const auto a = static_cast<std::size_t>(pair.a);
-    return ball_plane(placement.position[a], placement.radius[a], placement.walls[pair.b]);
+    return ball_plane(placement.position[a], placement.radius[a], placement.walls[pair.b],
+                      placement.lever_cut);
   }
   /// The geometry in the middle of the step: a wall that turns is not just set back.
   static ContactGeometry geometry_before(const Placement& placement, const Pair& pair, const Vec3& back_a,
                                          const Vec3& /*back_b*/) {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto walls = placement.middle_walls.empty() ? placement.walls : placement.middle_walls;
-    return ball_plane(placement.position[a] - back_a, placement.radius[a], walls[pair.b]);
+    return ball_plane(placement.position[a] - back_a, placement.radius[a], walls[pair.b],
+                      placement.lever_cut);
   }
   /// Index of the wall that side b belongs to.
   static std::int32_t wall(const Placement& /*placement*/, const Pair& pair) { return pair.b; }
@@ -158,9 +162,9 @@ struct BallFacet {
   static ContactGeometry geometry_of(const Placement& placement, std::span<const SurfacePlace> places,
                                      const Pair& pair, const Vec3& back) {
     const SurfacePlace& place = place_of(placement, places, pair);
-    ContactGeometry result = ball_feature(local_centre(placement, places, pair, back),
-                                          placement.radius[pair.a], facet_of(placement, pair),
-                                          feature(placement, pair), pair.side < 0 ? -1 : 1, place.start);
+    ContactGeometry result = ball_feature(
+        local_centre(placement, places, pair, back), placement.radius[pair.a], facet_of(placement, pair),
+        feature(placement, pair), pair.side < 0 ? -1 : 1, place.start, placement.lever_cut);
     if (!pair.is_contact()) result.overlap = std::min(result.overlap, 0.0);
     result.normal = place.turned(result.normal);
     result.lever_a = place.turned(result.lever_a);

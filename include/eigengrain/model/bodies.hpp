@@ -56,6 +56,10 @@ struct Bodies {
 double sphere_mass(double radius, double density);
 double sphere_inertia(double radius, double mass);
 
+/// The same of a disk of unit thickness about its axis: m = π R² ρ · 1 m, I = 1/2 m R².
+double disk_mass(double radius, double density);
+double disk_inertia(double radius, double mass);
+
 /// Puts the bodies in the order of a space-filling (Morton) curve, so that neighbours in space are
 /// neighbours in memory. Depends on positions and identities only.
 void sort_along_curve(Bodies& bodies);

@@ -91,6 +91,7 @@ struct Scene {
   PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
   double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47
+  bool full_levers = false;     ///< levers of balls end at their surface, not at the contact point
   TimestepChoice timestep;
   RunChoice run;
   std::vector<Region> measures;

@@ -40,9 +40,9 @@ struct ShearOptions {
        .kind = ParameterDescription::Kind::flag,
        .unit = "",
        .default_value = 0,
-       .description =
-           "project the shear force onto the new contact plane, as LAMMPS's gran/hooke/history does, in "
-           "place of turning it"},
+       .description = "project the shear force onto the new contact plane, in place of turning it, and let "
+                      "it begin with "
+                      "all of the step in which the contact forms, as LAMMPS's gran/hooke/history does"},
   }};
   /// values: of these parameters, and perhaps of more behind them.
   static ShearOptions from_values(std::span<const double> values) {
@@ -73,7 +73,8 @@ struct Response {
 ///   slip                 |F_s| <= μ F_n
 ///   energy               normal energy + ½ |F_s|²/k_s
 ///
-/// F_s starts at zero when the contact forms. k_s counts only where friction is positive.
+/// F_s starts at zero when the contact forms (`projected`: with the increment of that step). k_s counts only
+/// where friction is positive.
 ///
 /// Springs say what F_n, k_s and the energy are (laws/linear.hpp, hertz.hpp, hysteretic.hpp): Params with
 /// `friction` and `shear` (ShearOptions); Memory, what they remember beside the shear force;
@@ -184,8 +185,8 @@ class Frictional {
     Dissipation result;
     if constexpr (requires { springs_.lost(next.memory); })
       if (next.formed()) result.hysteresis = springs_.lost(next.memory) - springs_.lost(old.memory);
-    if (!springs_.has_shear() || !old.formed()) return result;
-    const Vec3 before = carried(motion, old);
+    if (!springs_.has_shear()) return result;
+    const Vec3 before = old.formed() ? carried(motion, old) : Vec3(Vec3::Zero());
     const Vec3 way = across(motion);
     if (!acts(motion, old)) {
       if (!before.isZero(0))
@@ -244,8 +245,10 @@ class Frictional {
 
   /// Shear force before the slip check. Zero in the step in which the contact forms.
   Vec3 trial_shear(const ContactMotion& motion, const State& old) const {
-    if (!springs_.has_shear() || !old.formed()) return Vec3::Zero();
+    if (!springs_.has_shear()) return Vec3::Zero();
     const ShearSprings shear = springs_.shear(motion, old.memory);
+    if (!old.formed())
+      return transport_ == Transport::projected ? Vec3(-shear.stiffness * across(motion)) : Vec3::Zero();
     return shear.kept * carried(motion, old) - shear.stiffness * across(motion);
   }
   /// Its derivative with respect to U.
