@@ -30,7 +30,7 @@ ContactBond law(double tension, double shear, double friction = 0.3) {
   return ContactBond::from_values(values);
 }
 ContactBond::State glued(const ContactBond& bond) {
-  return bond.bond({.geometry = {n, 0, n, -n}, .radius_a = 1, .radius_b = 1});
+  return bond.bond({.geometry = {n, 0, n, -n, 0.5}, .radius_a = 1, .radius_b = 1});
 }
 model::BondRule rule(double tension, double shear, double gap = 1e-9) {
   return {.kind = "contact", .parameters = {tension, shear}, .gap = gap};
@@ -158,7 +158,7 @@ TEST(ContactBond, HasTheDashpotsOfItsLawThatDoNotCountAgainstIt) {
   ASSERT_FALSE(ContactBond::serves(values));
   ASSERT_TRUE(contact::DampedContactBond::serves(values));
   const auto bond = contact::DampedContactBond::from_values(values);
-  const auto held = bond.bond({.geometry = {n, 0, n, -n}, .radius_a = 1, .radius_b = 1});
+  const auto held = bond.bond({.geometry = {n, 0, n, -n, 0.5}, .radius_a = 1, .radius_b = 1});
   contact::DampedContactBond::State next;
   // The springs pull with 0.8, below the strength of 1; the dashpots with 2 β √(m k) V, far above it.
   const ContactMotion motion{.normal = n, .overlap = -0.4, .velocity = {3, 0, 5}, .reduced_mass = 2};
