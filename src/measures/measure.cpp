@@ -44,8 +44,10 @@ std::vector<Mat3> body_stresses(const assembly::Model& model) {
       const Vec3 whole = lever + assembly::lever_of(model.bodies, row);
       stress[model.bodies.clumps.owner(row)] += sign * force * whole.transpose();
     };
-    add(pair.a, geometry.lever_a, -1);
-    if constexpr (Kinematics::second_is_body) add(pair.b, geometry.lever_b, 1);
+    // To the contact point, wherever the levers end.
+    const Vec3 beyond = (contact::to_contact_point - geometry.cut) * geometry.overlap * geometry.normal;
+    add(pair.a, geometry.lever_a - beyond, -1);
+    if constexpr (Kinematics::second_is_body) add(pair.b, geometry.lever_b + beyond, 1);
   });
   const model::Clumps& clumps = model.bodies.clumps;
   for (std::size_t i = 0; i < stress.size(); ++i)

@@ -23,7 +23,7 @@ SceneBuilder bonded_pair(std::mt19937_64& random) {
 }
 
 /// Moves and turns the clumps of a model where they stand.
-void deform(assembly::Model& model, std::mt19937_64& random, double shift, double turn) {
+void deform_clumps(assembly::Model& model, std::mt19937_64& random, double shift, double turn) {
   assembly::Displacement moved = no_displacement(model);
   for (std::int32_t c = 0; c < model.bodies.clumps.size(); ++c) {
     const auto holder = static_cast<std::size_t>(model.bodies.clumps.holder(c));
@@ -41,7 +41,7 @@ TEST(BondedClumps, HaveTheTangentOfTheirForces) {
   std::mt19937_64 random(51);
   for (int k = 0; k < 5; ++k) {
     assembly::Model model = bonded_pair(random).build();
-    deform(model, random, 0.05, 0.05);
+    deform_clumps(model, random, 0.05, 0.05);
     const System s(std::move(model));
     ASSERT_EQ(s.elements.size(), 1U);
     UnknownTangent tangent(s.unknowns);
