@@ -64,7 +64,7 @@ def parts(width):
         Part("a floor that moves", edit=floor(
             "plane: {point: [0, 0, 0], normal: [0, 0, 1]}, velocity: [0.01, 0, 0]")),
         Part("energies and walls in a table at every step",
-             ["histories=[{file: table.csv, every: 1, energies: true, walls: true}]"]),
+             ["histories=[{file: table.csv, every: 1, of: [energies, walls]}]"]),
     ]
 
 
