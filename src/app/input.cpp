@@ -24,6 +24,12 @@ bool touches_the_step(const std::string& override_text) {
                       [&](std::string_view key) { return override_text.starts_with(key); });
 }
 
+/// Whether an override may change the energy of a state.
+bool touches_the_energy(const std::string& override_text) {
+  return touches_the_step(override_text) && !override_text.starts_with("timestep") &&
+         !override_text.starts_with("damping");
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
@@ -47,9 +53,13 @@ Input read_input(const Options& options) {
   input.state = input.continued ? io::read_state(file, options.overrides)
                                 : cycle::start(io::read_scene(file, options.overrides));
   const auto& overrides = options.overrides;
-  if (input.continued && std::any_of(overrides.begin(), overrides.end(), touches_the_step)) {
+  if (input.continued && std::any_of(overrides.begin(), overrides.end(), touches_the_step))
     input.state.next_dt = 0;
-    input.state.ledger.reset();  // another model has another energy
+  if (input.continued && input.state.ledger &&
+      std::any_of(overrides.begin(), overrides.end(), touches_the_energy)) {
+    input.state.ledger.reset();
+    input.state.settings.notes.emplace_back(
+        "with other settings the scene has another energy: the ledger begins anew");
   }
   return input;
 }

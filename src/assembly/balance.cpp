@@ -97,12 +97,15 @@ Balance balance_of(const Model& model, const BodyForces& of_balls) {
     result.moment_mean += moment;
     result.moment_max = std::max(result.moment_max, moment);
   }
-  if (found.contacts == 0 || result.bodies == 0 || found.force == 0) {
+  const auto count = static_cast<double>(result.bodies);
+  if (found.contacts > 0) result.mean_contact_force = found.force / static_cast<double>(found.contacts);
+  // Bonds act before they bear anything: where nothing does yet, what is unbalanced is all there is.
+  if (found.contacts > 0 && found.force == 0 && result.bodies > 0)
+    result.mean_contact_force = std::max(result.mean, result.moment_mean) / count;
+  if (result.mean_contact_force == 0 || result.bodies == 0) {
     result.mean = result.max = result.moment_mean = result.moment_max = 0;
     return result;
   }
-  result.mean_contact_force = found.force / static_cast<double>(found.contacts);
-  const auto count = static_cast<double>(result.bodies);
   result.mean /= count * result.mean_contact_force;
   result.moment_mean /= count * result.mean_contact_force;
   result.max /= result.mean_contact_force;

@@ -54,6 +54,7 @@ Document read_document(std::string_view yaml, std::string_view name, std::span<c
 }
 
 constexpr std::string_view balls_key = "balls";
+constexpr std::string_view planar_key = "planar";
 constexpr std::string_view clumps_key = "clumps";
 
 void make_absolute(Node* path, const std::filesystem::path& folder) {
@@ -133,6 +134,11 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
   draft.scene.document = document_for_states(document, folder);
   const Section root(document.root, "", "", diagnostics);
   root.check_keys(balls_key);
+  for (const std::string& text : overrides)
+    if (text.starts_with(planar_key))
+      root.report(planar_key,
+                  "a state keeps the plane and the masses that it was started with; leave the "
+                  "override out, or start from the scene");
   read_sections(root, draft, [&](const Section& section, SceneDraft& into) {
     take_materials_of_balls(section, into, material_of_ball);
   });

@@ -79,6 +79,7 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
     else
       found.branch = geometry.lever_a + assembly::lever_of(bodies, pair.a);
     if constexpr (is_beside_law<typename Group::LawType>) {
+      found.carries_moments = true;
       beside.emplace_back(pair, found);
     } else {
       found.slides = slides(group.law, contact::at_rest(geometry), group.states[c]);
@@ -91,10 +92,12 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
   for (const auto& [pair, bond] : beside) {
     const Place wanted{pair, 0};
     const auto same = std::lower_bound(between_bodies.begin(), between_bodies.end(), wanted, precedes);
-    if (same != between_bodies.end() && !precedes(wanted, *same))
+    if (same != between_bodies.end() && !precedes(wanted, *same)) {
       result[same->index].force += bond.force;
-    else
+      result[same->index].carries_moments = true;
+    } else {
       result.push_back(bond);
+    }
   }
   return result;
 }
@@ -103,7 +106,12 @@ std::int32_t least_contacts(const assembly::Model& model) {
   bool shear = false;
   model.contacts.for_each_group([&](const auto& group) { shear = shear || group.law.needs_rotation(); });
   if (shear) return 2;
-  return model.gravity.isZero(0) ? 4 : 3;
+  const std::vector<model::FixedComponents>& fixed = model.bodies.fixed;
+  const auto flat = [&](int axis) {
+    return std::all_of(fixed.begin(), fixed.end(), [&](const auto& f) { return f.component(axis); });
+  };
+  const int dimensions = flat(0) || flat(1) || flat(2) ? 2 : 3;
+  return model.gravity.isZero(0) ? dimensions + 1 : dimensions;
 }
 
 std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingContact> contacts,
@@ -112,11 +120,12 @@ std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingC
   std::vector<std::int32_t> first;
   std::vector<std::int32_t> second;
   std::vector<std::int32_t> count(static_cast<std::size_t>(bodies), 0);
+  const auto weight = [&](const ActingContact& contact) { return contact.carries_moments ? least : 1; };
   for (const ActingContact& contact : contacts) {
     first.push_back(contact.a);
     second.push_back(contact.b);
-    ++count[contact.a];
-    if (contact.b != ActingContact::wall) ++count[contact.b];
+    count[contact.a] += weight(contact);
+    if (contact.b != ActingContact::wall) count[contact.b] += weight(contact);
   }
   const Adjacency as_first = group_by_row(bodies, first);
   const Adjacency as_second = group_by_row(bodies, second);
@@ -134,13 +143,13 @@ std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingC
   while (!waiting.empty()) {
     const std::int32_t body = waiting.back();
     waiting.pop_back();
-    const auto lose = [&](std::int32_t other) {
+    const auto lose = [&](std::int32_t other, const ActingContact& contact) {
       if (other == ActingContact::wall) return;
-      --count[other];
+      count[other] -= weight(contact);
       look(other);
     };
-    for (const std::int32_t c : as_first.links(body)) lose(contacts[c].b);
-    for (const std::int32_t c : as_second.links(body)) lose(contacts[c].a);
+    for (const std::int32_t c : as_first.links(body)) lose(contacts[c].b, contacts[c]);
+    for (const std::int32_t c : as_second.links(body)) lose(contacts[c].a, contacts[c]);
   }
   for (std::int32_t c = 0; c < clumps.size(); ++c)
     for (const std::int32_t ball : clumps.members(c)) removed[ball] = removed[clumps.holder(c)];

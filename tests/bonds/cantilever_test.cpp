@@ -1,6 +1,8 @@
 // A row of bonded balls as a beam of circular section: against Timoshenko's theory in K and in the cycle, and
 // rolled up to a circle.
+#include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/bonds.hpp"
+#include "eigengrain/measures/acting_contacts.hpp"
 
 #include "support/bonds.hpp"
 #include "support/motion.hpp"
@@ -8,6 +10,7 @@
 #include <Eigen/SparseCholesky>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -96,6 +99,21 @@ TEST(Cantilever, ConvergesToTimoshenkoAtSecondOrder) {
 }
 
 // Axial load and torque have no error: L/EA and L/GJ.
+// Bonds that nothing has stretched yet bear nothing, and gravity pulls.
+TEST(Cantilever, IsNotInBalanceBeforeItBends) {
+  SceneBuilder row;
+  row.ball({0, 0, 0}, 1, 1, fix_all).ball({2, 0, 0}).ball({4, 0, 0});
+  row.without_law().bonded(Cemented{}.rule()).gravity({0, 0, -1e-3});
+  const assembly::State state = cycle::start(row.scene());
+  const assembly::Balance balance = assembly::balance_of(state);
+  EXPECT_EQ(balance.bodies, 2);
+  EXPECT_EQ(balance.mean, 1);
+  // One bond holds all six components: nobody rattles.
+  const auto contacts = measures::acting_contacts(state.model);
+  const auto loose = measures::rattlers(state.model, contacts, measures::least_contacts(state.model));
+  EXPECT_EQ(std::count(loose.begin(), loose.end(), true), 0);
+}
+
 TEST(Cantilever, StretchesAndTwistsAsABar) {
   const Beam beam;
   constexpr int n = 16;

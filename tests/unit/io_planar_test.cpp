@@ -1,3 +1,4 @@
+#include "io/settings_reader.hpp"
 #include "unit/io_support.hpp"
 
 #include <gmock/gmock.h>
@@ -9,7 +10,6 @@
 namespace eigengrain::io {
 namespace {
 
-using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -54,6 +54,19 @@ TEST(Planar, ReportsWhatLeavesThePlane) {
               ElementsAre(HasSubstr("ball 1: a spin of 3 rad/s about z")));
   EXPECT_THAT(reported("normal: y", "", "gravity: [0, -9.81, 0]\n"),
               ElementsAre(HasSubstr("gravity: -9.81 m/s2 along y, across the plane")));
+}
+
+TEST(Planar, IsSettledWhereAStateBegan) {
+  const model::Scene scene = read_scene_text(scene_of("normal: y, shape: disk"), ".");
+  EXPECT_NO_THROW(read_settings_text(scene.document, ".", "settings", {}, scene.bodies.material));
+  const std::vector<std::string> other{"planar.shape=sphere"};
+  try {
+    read_settings_text(scene.document, ".", "settings", other, scene.bodies.material);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(texts_of(error.mistakes()),
+                ElementsAre(HasSubstr("planar: a state keeps the plane and the masses")));
+  }
 }
 
 TEST(Planar, CentresMayBeRoundedInFiles) {

@@ -14,9 +14,9 @@ namespace eigengrain::io {
 ///
 /// A frame has a point a ball, in the order of identity, so that frames can be compared ball by ball: radius,
 /// identity, clump (where there are any; -1: none), velocity, spin (where something turns), force (of all
-/// contacts, N) and contacts (number of those that act), and stress if it is asked for (mean over the ball's own
-/// volume, Pa, nine numbers, row by row: measures/measure.hpp); and the fields TimeValue (s) and Step. All
-/// numbers are the run's own, to the bit.
+/// contacts, N) and contacts (number of those that act), and stress if it is asked for (mean over the ball's
+/// own volume, Pa, nine numbers, row by row: measures/measure.hpp); and the fields TimeValue (s) and Step.
+/// All numbers are the run's own, to the bit.
 ///
 /// Each file is there in full or not at all, and the list names only frames that are there: a run may be
 /// killed at any time.
