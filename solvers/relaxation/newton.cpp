@@ -339,7 +339,7 @@ Solver new_solver(Context& context) {
 void commit(State& state, const Displacement& of_bodies, const Displacement& moved) {
   model::Bodies& bodies = state.model.bodies;
   for (std::size_t i = 0; i < bodies.position.size(); ++i) bodies.position[i] += moved.translation[i];
-  assembly::move_clumps(bodies, of_bodies);
+  assembly::commit_clumps(bodies, of_bodies);
   bodies.orientation = assembly::turned_orientations(bodies, moved.rotation);
   assembly::BodyForces sum;
   assembly::ContactForceSum contacts(state.model, state.turns());

@@ -64,7 +64,7 @@ void print_number(const char* name, double value) {
 
 void print(const std::string& name, const Measure& m) {
   const measures::Fabric& f = m.fabric;
-  fmt::print("{}: {:.5g} m3, {}\n", name, m.volume, counted(f.bodies, "ball", "balls"));
+  fmt::print("{}: {:.5g} m3, {}\n", name, m.volume, counted(f.bodies, "body", "bodies"));
   print_number("porosity", m.porosity);
   print_tensor("stress", m.stress, " Pa");
   fmt::print("  {:<14}{:.5g} Pa (tension positive)\n", "mean stress", m.stress.trace() / 3);

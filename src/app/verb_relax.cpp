@@ -66,9 +66,8 @@ void relax(const Options& options) {
       found.time = input.state.time;
     }
     io::BreakFile(input.folder, input.stem + "-relaxed-breaks.csv", std::nullopt).add(input.state.breaks);
-  }
-  if (!input.state.breaks.empty())
     fmt::print("{} broke on the way\n", counted(std::ssize(input.state.breaks), "bond", "bonds"));
+  }
   fmt::print("{}: {}{} in {} ({}), {} of Newton\n{}\nstate: {}\n", input.state.settings.name,
              counted(result.explicit_steps, "explicit step", "explicit steps"),
              result.part_steps > 0 ? fmt::format(" and {} of a few balls", grouped(result.part_steps)) : "",

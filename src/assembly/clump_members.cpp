@@ -39,7 +39,7 @@ void gather_members(const model::Bodies& bodies, std::span<const Vec3> rotation,
   }
 }
 
-void move_clumps(model::Bodies& bodies, const Displacement& moved_holders) {
+void commit_clumps(model::Bodies& bodies, const Displacement& moved_holders) {
   model::Clumps& clumps = bodies.clumps;
   if (clumps.empty()) return;
   for (std::size_t c = 0; c < clumps.position.size(); ++c) {

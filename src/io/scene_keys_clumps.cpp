@@ -59,7 +59,7 @@ std::vector<KeyDescription> clump_keys() {
       {.path = "clumps[].instances",
        .kind = section_list,
        .required = true,
-       .example = "[{position: [0.1, 0.1, 0.1]}]",
+       .example = "[{position: [0.1, 0.1, 0.3]}]",
        .description = "the bodies of this sort"},
       {.path = "clumps[].instances[].position",
        .kind = vector,

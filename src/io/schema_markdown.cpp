@@ -45,7 +45,7 @@ std::string value_text(const KeyDescription& key) {
     case text:
       return "name";
     case texts:
-      return "two names";
+      return "list of names";
     case word:
       return "one of " + joined(key.words);
     case words:
@@ -96,7 +96,7 @@ std::string laws_markdown(std::string_view word, const std::vector<contact::LawD
 std::string schema_markdown() {
   std::string text = R"(# The scene file
 
-Generated from the table in `src/io/schema.cpp` that the reader itself uses; a test keeps the two equal.
+Generated from the tables in `src/io/scene_keys_*.cpp` that the reader itself uses; a test keeps the two equal.
 
 A scene is one YAML document. Paths in it are relative to its folder. A key that stands nowhere below is an
 error, and so are a wrong unit, a number that is not finite and a key given twice; all mistakes are reported

@@ -6,6 +6,7 @@
 #include "eigengrain/io/scene_reader.hpp"
 #include "eigengrain/io/state_file.hpp"
 
+#include "support/bits.hpp"
 #include "support/bonds.hpp"
 #include "support/motion.hpp"
 #include "unit/io_support.hpp"
@@ -38,17 +39,6 @@ std::string text_of(const std::vector<BondBreak>& breaks) {
   return text;
 }
 
-/// Positions, orientations and what is left of the bonds, to the bit.
-std::string bits_of(const State& state) {
-  std::string text;
-  for (const Vec3& x : state.model.bodies.position)
-    text += fmt::format("{:a} {:a} {:a}\n", x.x(), x.y(), x.z());
-  for (const Quat& q : state.model.bodies.orientation)
-    text += fmt::format("{:a} {:a} {:a} {:a}\n", q.x(), q.y(), q.z(), q.w());
-  for (const Vec3& w : state.model.bodies.spin) text += fmt::format("{:a} {:a} {:a}\n", w.x(), w.y(), w.z());
-  return text + fmt::format("{}", assembly::count_bonds(state.model));
-}
-
 /// A simple cubic block of bonded balls, periodic along x, that is shaken to pieces.
 SceneBuilder block(int edge, const model::BondRule& bond) {
   std::mt19937_64 random(5);
@@ -60,15 +50,6 @@ SceneBuilder block(int edge, const model::BondRule& bond) {
             .moving(0.02 * random_vector(random), 0.02 * random_vector(random));
   return builder.periodic(Vec3::Constant(2.0 * edge), {true, false, false}).bonded(bond);
 }
-
-/// Puts the number of threads back when it goes.
-struct Threads {
-  explicit Threads(int wanted) { set_threads(wanted); }
-  Threads(const Threads&) = delete;
-  Threads& operator=(const Threads&) = delete;
-  ~Threads() { set_threads(before); }
-  int before = threads();
-};
 
 class Breaks : public testing::TestWithParam<model::BondRule> {};
 

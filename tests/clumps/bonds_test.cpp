@@ -33,7 +33,7 @@ void deform_clumps(assembly::Model& model, std::mt19937_64& random, double shift
   const assembly::Displacement of_holders = moved;
   assembly::carry_members(model.bodies, moved);
   model.bodies.orientation = assembly::turned_orientations(model.bodies, moved.rotation);
-  assembly::move_clumps(model.bodies, of_holders);
+  assembly::commit_clumps(model.bodies, of_holders);
 }
 
 TEST(BondedClumps, HaveTheTangentOfTheirForces) {

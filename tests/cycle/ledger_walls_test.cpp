@@ -31,7 +31,8 @@ TEST(LedgerWalls, AWallThatCompressesTwoBallsPutsInWhatTheyStore) {
   builder.ball({0, 0, 0}, 1, 1, fix_all).ball({0, 0, 2 - 1e-12}).plane({0, 0, 3 - 2e-12}, {0, 0, -1});
   builder.carried({0, 0, 0});
   builder.scene().wall_motions[0].time = {0, 100, 1000, 1100};
-  builder.scene().wall_motions[0].velocity = {{}, {{0, 0, -speed}, {}}, {{0, 0, -speed}, {}}, {}};
+  builder.scene().wall_motions[0].velocity = {
+      {}, {.translation = {0, 0, -speed}}, {.translation = {0, 0, -speed}}, {}};
   Cycle cycle = cycle_with_ledger(builder, 0.5);
   cycle.run(2300);
   const Ledger ledger = ledger_of(cycle.state());

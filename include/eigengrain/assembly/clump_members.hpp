@@ -37,8 +37,8 @@ void carry_members(const model::Bodies& bodies, Displacement& moved);
 /// rotation  θ [bodies] since the committed state, in which the bodies are; empty: none
 void gather_members(const model::Bodies& bodies, std::span<const Vec3> rotation, BodyForces& forces);
 
-/// The centres of clumps and what turns with them after a displacement becomes a part of the state; `moved`
-/// as carry_members got it. Balls are placed anew.
-void move_clumps(model::Bodies& bodies, const Displacement& moved_holders);
+/// The centres of clumps and what turns with them after a displacement becomes a part of the state;
+/// `moved_holders` as it was before carry_members. Balls are placed anew.
+void commit_clumps(model::Bodies& bodies, const Displacement& moved_holders);
 
 }  // namespace eigengrain::assembly
