@@ -17,8 +17,9 @@ namespace eigengrain::contact {
 /// as they push and do not slip (those of the law with its `tension`); it carries no moment. It breaks where
 ///
 ///   -F_n  reaches the tensile strength: the contact is open then, and forces are gone;
-///   |F_s| reaches the shear strength: what is left is the unbonded contact, which carries on with F_n
-///         and F_s, cut to the Coulomb cone, if it is pressed.
+///   |F_s| reaches the shear strength: what is left is the unbonded contact,
+///         which carries on with F_n and F_s, cut to the Coulomb
+///         cone, if it is pressed.
 ///
 /// F_n and F_s are those of the springs; dashpots do not count. F_n = k_n U as ever, so a bond over a gap
 /// pulls from the start. k_s counts while the bond holds, and after that where friction is positive. One
