@@ -9,7 +9,7 @@ std::vector<KeyDescription> clump_keys() {
       {.path = "clumps",
        .kind = section_list,
        .example = "[{balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [5 mm, 0, 0], radius: 5 mm}], "
-                  "material: grain, instances: [{position: [0.1, 0.1, 0.1]}]}]",
+                  "material: grain, instances: [{position: [0.1, 0.1, 0.3]}]}]",
        .description =
            "each entry is a sort of rigid body made of several balls; these are numbered behind all "
            "others, and never touch those of their own body"},
@@ -65,7 +65,7 @@ std::vector<KeyDescription> clump_keys() {
        .kind = vector,
        .unit = "m",
        .required = true,
-       .example = "[0.1, 0.1, 0.1]",
+       .example = "[0.1, 0.1, 0.3]",
        .description = "of the centre of mass; wrapped into the cell where that is periodic"},
       {.path = "clumps[].instances[].axis",
        .kind = vector,
