@@ -20,6 +20,5 @@ run() { # run PRESET [targets] [-- ctest options]: configure, build and test one
 }
 
 run release
-run dev test_unit test_laws -- -L '^(unit|laws)$'
 # The same objects without PETSc: the question is whether they link and the program knows what it lacks.
 run minimal eigengrain test_unit -- -L '^(cli|install)$'

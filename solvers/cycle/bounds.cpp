@@ -56,9 +56,14 @@ double timestep_of(double lambda) {
 double elastic_estimate(const LinearSystem& system) {
   const std::vector<Vec6> scale = scale_of_bodies(system);
   std::vector<Vec6> stiffness(scale.size(), Vec6::Zero());
+  const auto diagonal = [&](std::int32_t body, const Mat6& block) -> Vec6 {
+    if (system.unknowns.axes(body) == nullptr) return block.diagonal();
+    return system.unknowns.in_own_axes(body, body, block).diagonal();
+  };
   for (const ContactElement& element : system.elements) {
-    stiffness[element.a] += contact::end_block(element, element.lever_a).diagonal();
-    if (element.b != no_body) stiffness[element.b] += contact::end_block(element, element.lever_b).diagonal();
+    stiffness[element.a] += diagonal(element.a, contact::end_block(element, element.lever_a));
+    if (element.b != no_body)
+      stiffness[element.b] += diagonal(element.b, contact::end_block(element, element.lever_b));
   }
   double largest = 0;
   for (std::size_t i = 0; i < stiffness.size(); ++i)
@@ -124,6 +129,7 @@ Mat6 BlockBound::block(std::int32_t body) const {
     const double factor = moves(other) ? 1.0 + weight_[other] / weight_[body] : 1.0;
     sum += factor * contact::end_block(element, first ? element.lever_a : element.lever_b);
   }
+  if (system_.unknowns.axes(body) != nullptr) sum = system_.unknowns.in_own_axes(body, body, sum);
   return scale_[body].asDiagonal() * sum * scale_[body].asDiagonal();
 }
 

@@ -3,6 +3,10 @@
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/orientation.hpp"
+
+#include "clump_motion.hpp"
+#include "kick.hpp"
 
 #include <fmt/format.h>
 
@@ -26,18 +30,14 @@ double mean_radius(const model::Bodies& bodies) {
   return std::accumulate(bodies.radius.begin(), bodies.radius.end(), 0.0) / bodies.size();
 }
 
-/// Changes the free components of a velocity by the damped force of its body.
-void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, double damping,
-          std::uint8_t fixed) {
-  for (int k = 0; k < 3; ++k) {
-    if (((fixed >> k) & 1) != 0) continue;
-    double f = force[k];
-    if (velocity[k] > 0)
-      f -= damping * std::abs(f);
-    else if (velocity[k] < 0)
-      f += damping * std::abs(f);
-    velocity[k] += duration * f / inertia;
-  }
+/// What bodies do to the walls in a step, by the trapezoidal rule, J.
+double work_on_walls(const std::vector<assembly::WallLoad>& before,
+                     const std::vector<assembly::WallLoad>& after, const assembly::WallStep& step) {
+  double work = 0;
+  for (std::size_t w = 0; w < step.side.size(); ++w)
+    work += 0.5 * ((before[w].force + after[w].force).dot(step.side[w].translation) +
+                   (before[w].moment + after[w].moment).dot(step.side[w].rotation));
+  return work;
 }
 
 /// A step chosen anew is taken where it is shorter or longer by more than this: a step that changes with
@@ -74,27 +74,41 @@ Cycle::Cycle(State state, TimestepPolicy policy)
   if (state_.next_dt == 0) choose_timestep();
 }
 
+template <class Work>
 double Cycle::move(double duration, double dt) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
   const double damping = state_.model.local_damping;
+  const bool clumps = !bodies.clumps.empty();
+  if (clumps) move_clumps(state_, duration, dt);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
+  std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);
   for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     double way = 0;
+    Work work(state_.dt, dt);
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const model::FixedComponents fixed = bodies.fixed[i];
-      const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
-      kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation());
-      bodies.position[i] += dt * bodies.velocity[i];
-      if (state_.turns())
-        kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation());
+      if (!clumps || bodies.clumps.of(static_cast<std::int32_t>(i)) == model::Clumps::none) {
+        const model::FixedComponents fixed = bodies.fixed[i];
+        const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
+        kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation(), work);
+        work.gravity(bodies.mass[i] * state_.model.gravity, bodies.velocity[i]);
+        bodies.position[i] += dt * bodies.velocity[i];
+        if (state_.turns())
+          kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation(),
+               work);
+      }
       const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
+    if (!bodies.orientation.empty())
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+        bodies.orientation[i] = contact::turned(bodies.orientation[i], dt * bodies.spin[i]);
     farthest[chunk] = way;
+    if constexpr (Work::counts) works[chunk] = work.sum;
   });
+  for (const assembly::EnergyIntegrals& work : works) state_.ledger->integrals += work;
   return *std::max_element(farthest.begin(), farthest.end());
 }
 
@@ -116,22 +130,35 @@ void Cycle::choose_timestep() {
 void Cycle::step() {
   const double dt = state_.next_dt;
   const double half_skin = 0.5 * state_.list.skin;
+  const bool counts_walls = state_.ledger && walls_.any();
+  std::vector<assembly::WallLoad> before;
+  if (counts_walls) before = assembly::wall_loads(state_.model);
   if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
-  const double way = move(0.5 * (state_.dt + dt), dt);
+  const double duration = 0.5 * (state_.dt + dt);
+  const double way = state_.ledger ? move<KickWork>(duration, dt) : move<NoWork>(duration, dt);
   const bool expired = !(way <= half_skin * half_skin && state_.list.wall_way <= half_skin);
   if (expired) list_anew();
 
   model::Bodies& bodies = state_.model.bodies;
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
-  forces_.advance(
-      state_.model,
-      {bodies.position, bodies.velocity, bodies.spin, dt, 1 / dt, walls_.any() ? &walls_ : nullptr}, sum);
+  forces_.advance(state_.model,
+                  {.position = bodies.position,
+                   .velocity = bodies.velocity,
+                   .spin = bodies.spin,
+                   .duration = dt,
+                   .orientation = bodies.orientation,
+                   .per_second = 1 / dt,
+                   .walls = walls_.any() ? &walls_ : nullptr},
+                  sum, state_.ledger ? &state_.ledger->integrals.contacts : nullptr);
+  if (counts_walls)
+    state_.ledger->integrals.walls -= work_on_walls(before, assembly::wall_loads(state_.model), walls_);
   state_.force = std::move(sum.force);
   state_.moment = std::move(sum.moment);
 
   state_.dt = dt;
   state_.time += dt;
   ++state_.step;
+  if (!forces_.broken().empty()) assembly::note_breaks(state_, forces_.broken());
   if (expired || (policy_.every > 0 && state_.step % policy_.every == 0)) choose_timestep();
 }
 

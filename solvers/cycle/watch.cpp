@@ -104,8 +104,16 @@ bool closed(const State& state) {
     if (model.cell.periodic[k] && model.gravity[k] != 0) return false;
   if (!model.wall_motions.empty()) return false;
   const model::Bodies& bodies = model.bodies;
+  const model::Clumps& clumps = bodies.clumps;
+  for (std::int32_t c = 0; c < clumps.size(); ++c)
+    for (int k = 0; k < 3; ++k) {
+      const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(clumps.holder(c))];
+      if (fixed.component(k) && clumps.velocity[static_cast<std::size_t>(c)][k] != 0) return false;
+      if (fixed.component(k + 3) && clumps.spin[static_cast<std::size_t>(c)][k] != 0) return false;
+    }
   for (std::size_t i = 0; i < bodies.position.size(); ++i)
     for (int k = 0; k < 3; ++k) {
+      if (clumps.of(static_cast<std::int32_t>(i)) != model::Clumps::none) break;
       if (bodies.fixed[i].component(k) && bodies.velocity[i][k] != 0) return false;
       if (state.turns() && bodies.fixed[i].component(k + 3) && bodies.spin[i][k] != 0) return false;
     }

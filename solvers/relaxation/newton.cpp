@@ -1,6 +1,7 @@
 #include "newton.hpp"
 
 #include "eigengrain/assembly/balance.hpp"
+#include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/tangent.hpp"
@@ -58,11 +59,14 @@ class Equations {
   PetscInt size() const { return static_cast<PetscInt>(system_.unknowns.size()); }
   Mat jacobian() const { return matrix_.mat(); }
   const Displacement& moved() const { return moved_; }
+  /// The same of all balls, which those of clumps share.
+  const Displacement& moved_balls() const { return clumps().empty() ? moved_ : carried_; }
 
   /// r(x) = -(contacts + gravity) on the free components.
   void residual(Vec x, Vec r) {
     place(x);
     forces_.evaluate(state_.model, trial(), sum_);
+    gather_clumps();
     const PetscScalar* scale = nullptr;
     PetscScalar* out = nullptr;
     EIGENGRAIN_PETSC(VecGetArrayRead(scale_.get(), &scale));
@@ -115,13 +119,16 @@ class Equations {
   /// Shortens the step of each body that would leave what the list of contacts knows; whether any had to.
   /// Body by body: one that floats or rolls must not hold up the others.
   bool limit(Vec x, Vec y) const {
-    const double room = 0.45 * reach_;
+    const double whole_room = 0.45 * reach_;
     const PetscScalar* at = nullptr;
     PetscScalar* step = nullptr;
     bool limited = false;
     EIGENGRAIN_PETSC(VecGetArrayRead(x, &at));
     EIGENGRAIN_PETSC(VecGetArray(y, &step));
     for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block) {
+      // A ball of a clump may go both ways of it.
+      const double room =
+          clumps().of(system_.unknowns.body(block)) == model::Clumps::none ? whole_room : 0.5 * whole_room;
       const Eigen::Map<const Vec3> from(&at[3 * block]);
       Eigen::Map<Vec3> by(&step[3 * block]);
       const Vec3 to = from - by;  // SNES subtracts
@@ -136,6 +143,34 @@ class Equations {
   }
 
  private:
+  const model::Clumps& clumps() const { return state_.model.bodies.clumps; }
+
+  /// Forces of balls to those of clumps, moments along their axes.
+  void gather_clumps() {
+    if (clumps().empty()) return;
+    assembly::gather_members(state_.model.bodies, carried_.rotation, sum_);
+    for (std::int32_t c = 0; c < clumps().size(); ++c) {
+      Vec3& moment = sum_.moment[static_cast<std::size_t>(clumps().holder(c))];
+      moment = (clumps().orientation[static_cast<std::size_t>(c)].conjugate() * moment).eval();
+    }
+  }
+  /// What the unknowns of clumps, along their axes, mean for their balls.
+  void carry_clumps() {
+    if (clumps().empty()) return;
+    for (std::int32_t c = 0; c < clumps().size(); ++c) {
+      Vec3& theta = moved_.rotation[static_cast<std::size_t>(clumps().holder(c))];
+      theta = (clumps().orientation[static_cast<std::size_t>(c)] * theta).eval();
+    }
+    carried_ = moved_;
+    assembly::carry_members(state_.model.bodies, carried_);
+  }
+  /// Of a body, where θ has moved its surface by as much as u = R θ, m.
+  double size_of(std::int32_t body) const {
+    const std::int32_t clump = clumps().of(body);
+    return clump == model::Clumps::none ? state_.model.bodies.radius[static_cast<std::size_t>(body)]
+                                        : clumps().radius[static_cast<std::size_t>(clump)];
+  }
+
   /// σ: with it alone, the body that is accelerated most would step by longest_step.
   double shift_for(Vec r) const {
     const PetscScalar* force = nullptr;
@@ -165,7 +200,7 @@ class Equations {
     EIGENGRAIN_PETSC(VecGetArrayWrite(scale_.get(), &scale));
     EIGENGRAIN_PETSC(VecGetArrayWrite(mass_.get(), &mass));
     for_each_number([&](std::size_t number, std::int32_t body, int, bool turns, bool) {
-      scale[number] = turns ? 1.0 / state_.model.bodies.radius[body] : 1.0;
+      scale[number] = turns ? 1.0 / size_of(body) : 1.0;
       mass[number] = system_.mass[number] * scale[number] * scale[number];
     });
     EIGENGRAIN_PETSC(VecRestoreArrayWrite(scale_.get(), &scale));
@@ -182,10 +217,15 @@ class Equations {
     });
     EIGENGRAIN_PETSC(VecRestoreArrayRead(scale_.get(), &scale));
     EIGENGRAIN_PETSC(VecRestoreArrayRead(x, &values));
+    carry_clumps();
+    const Displacement& balls = moved_balls();
     for (std::size_t i = 0; i < position_.size(); ++i)
-      position_[i] = state_.model.bodies.position[i] + moved_.translation[i];
+      position_[i] = state_.model.bodies.position[i] + balls.translation[i];
+    orientation_ = assembly::turned_orientations(state_.model.bodies, balls.rotation);
   }
-  assembly::Trial trial() const { return {position_, moved_.translation, moved_.rotation, 1.0}; }
+  assembly::Trial trial() const {
+    return {position_, moved_balls().translation, moved_balls().rotation, 1.0, orientation_};
+  }
 
   const State& state_;
   assembly::LinearSystem system_;
@@ -195,9 +235,11 @@ class Equations {
   double reach_;         ///< of the list of contacts, m
   double longest_step_;  ///< of a body that nothing holds, m
   Vector scale_;
-  Vector mass_;  ///< of the unknowns: m and I/R²
-  Displacement moved_;
+  Vector mass_;           ///< of the unknowns: m and I/R²
+  Displacement moved_;    ///< of bodies: of a clump in the row of its holder
+  Displacement carried_;  ///< of all balls, where there are clumps
   std::vector<Vec3> position_;
+  std::vector<Quat> orientation_;
   assembly::BodyForces sum_;
 };
 
@@ -293,13 +335,17 @@ Solver new_solver(Context& context) {
   return solver;
 }
 
-/// The displacement becomes a part of the state.
-void commit(State& state, const Displacement& moved) {
+/// The displacement of bodies, and of all balls, becomes a part of the state.
+void commit(State& state, const Displacement& of_bodies, const Displacement& moved) {
   model::Bodies& bodies = state.model.bodies;
   for (std::size_t i = 0; i < bodies.position.size(); ++i) bodies.position[i] += moved.translation[i];
+  assembly::commit_clumps(bodies, of_bodies);
+  bodies.orientation = assembly::turned_orientations(bodies, moved.rotation);
   assembly::BodyForces sum;
-  assembly::ContactForceSum(state.model, state.turns())
-      .advance(state.model, {bodies.position, moved.translation, moved.rotation, 1.0}, sum);
+  assembly::ContactForceSum contacts(state.model, state.turns());
+  contacts.advance(state.model, {bodies.position, moved.translation, moved.rotation, 1.0, bodies.orientation},
+                   sum);
+  assembly::note_breaks(state, contacts.broken());
   state.force = std::move(sum.force);
   state.moment = std::move(sum.moment);
 }
@@ -337,7 +383,7 @@ NewtonResult newton(State& state, const NewtonOptions& options) {
     equations.residual(x.get(), r.get());  // moved() is that of the solution
     // SNES may have ended on a step beyond the one that was judged.
     if (equations.ratio(r.get()) <= context.ratio)
-      commit(state, equations.moved());
+      commit(state, equations.moved(), equations.moved_balls());
     else
       result.converged = result.unfinished = false;
   }

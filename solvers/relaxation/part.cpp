@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/base/assert.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -107,6 +108,7 @@ Movers movers_of(const State& state, double force) {
 }
 
 Part::Part(State& whole, std::span<const std::int32_t> movers) {
+  EIGENGRAIN_ASSERT(whole.model.bodies.clumps.empty());
   const double ring = mean_radius(whole.model.bodies, movers);
   room_ = room_of_ring * ring;
   assembly::renew_list(whole, ring);
@@ -164,11 +166,13 @@ void Part::put_back(const State& part, State& whole) const {
     bodies.position[row] = part.model.bodies.position[k];
     bodies.velocity[row] = part.model.bodies.velocity[k];
     if (whole.turns()) bodies.spin[row] = part.model.bodies.spin[k];
+    if (!bodies.orientation.empty()) bodies.orientation[row] = part.model.bodies.orientation[k];
   }
   whole.model.contacts.for_each_group([&](auto& group) { erase(group, free); });
   part.model.contacts.for_each_group(
       [&](const auto& group) { append(group, free_, bodies_, matching(whole.model.contacts, group)); });
   assembly::renew_list(whole, whole.list.skin);
+  assembly::note_breaks(whole, part.breaks);
   assembly::renew_forces(whole);
 }
 

@@ -18,7 +18,7 @@ Movers movers_of(const assembly::State& state, double force);
 
 /// A few moving bodies of a packing and what surrounds them, as a state of its own: the movers and their
 /// neighbours are free, the next ring is held, all others are left out. Where a handful of balls still roll
-/// on a bed at rest, cycles of this part cost next to nothing beside cycles of the whole.
+/// on a bed at rest, cycles of this part cost next to nothing beside cycles of the whole. Not with clumps.
 class Part {
  public:
   /// Lists the contacts of the whole anew. Neighbours are bodies whose surfaces are less than the mean radius
@@ -28,8 +28,8 @@ class Part {
   assembly::State& state() { return state_; }
   /// Whether everything in a state that came from this part is near enough to where it was at first.
   bool has_room(const assembly::State& state) const;
-  /// Brings what the part has become, velocities and contacts with their history, back into the whole, and
-  /// forces up to date. The whole must be as the constructor left it.
+  /// Brings what the part has become, velocities, contacts and bonds with their history and bonds that broke,
+  /// back into the whole, and forces up to date. The whole must be as the constructor left it.
   void put_back(const assembly::State& part, assembly::State& whole) const;
 
  private:

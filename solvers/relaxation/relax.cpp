@@ -58,6 +58,10 @@ bool settled_within(const Balance& balance, double ratio) {
 void halt(State& state) {
   for (Vec3& v : state.model.bodies.velocity) v.setZero();
   for (Vec3& w : state.model.bodies.spin) w.setZero();
+  model::Clumps& clumps = state.model.bodies.clumps;
+  for (Vec3& v : clumps.velocity) v.setZero();
+  for (Vec3& w : clumps.spin) w.setZero();
+  for (Vec3& l : clumps.angular_momentum) l.setZero();
   state.dt = 0;
   state.next_dt = 0;
   assembly::renew_forces(state);
@@ -120,7 +124,10 @@ class Relaxation {
   /// Velocities that fixed components keep: they rest while an equilibrium is sought, and move on afterwards.
   struct GivenVelocities {
     explicit GivenVelocities(const State& state)
-        : velocity(state.model.bodies.velocity), spin(state.model.bodies.spin) {}
+        : velocity(state.model.bodies.velocity),
+          spin(state.model.bodies.spin),
+          of_clumps(state.model.bodies.clumps.velocity),
+          clump_spin(state.model.bodies.clumps.spin) {}
     void restore(State& state) const {
       model::Bodies& bodies = state.model.bodies;
       for (std::size_t i = 0; i < velocity.size(); ++i) {
@@ -128,9 +135,20 @@ class Relaxation {
         bodies.velocity[i] = velocity[i] - model::free_part(velocity[i], fixed.translation());
         if (!spin.empty()) bodies.spin[i] = spin[i] - model::free_part(spin[i], fixed.rotation());
       }
+      model::Clumps& clumps = bodies.clumps;
+      for (std::int32_t c = 0; c < clumps.size(); ++c) {
+        const auto k = static_cast<std::size_t>(c);
+        const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(clumps.holder(c))];
+        clumps.velocity[k] = of_clumps[k] - model::free_part(of_clumps[k], fixed.translation());
+        if (fixed.rotation() != 7) continue;
+        clumps.spin[k] = clump_spin[k];
+        clumps.angular_momentum[k] = model::angular_momentum(clumps, c, clump_spin[k]);
+      }
     }
     std::vector<Vec3> velocity;
     std::vector<Vec3> spin;
+    std::vector<Vec3> of_clumps;
+    std::vector<Vec3> clump_spin;
   };
 
   bool given_up() const {
@@ -178,8 +196,10 @@ class Relaxation {
            static_cast<double>(movers.bodies.size()) <= few * static_cast<double>(result_.end.bodies);
   }
 
-  /// Whether a few bodies are all that keeps the state from the ratio.
+  /// Whether a few bodies are all that keeps the state from the ratio. A part (part.hpp) knows no clumps:
+  /// where there are some, the whole is cycled until it has settled.
   bool few_move(const State& state, double ratio) const {
+    if (!state.model.bodies.clumps.empty()) return false;
     const Movers movers = movers_of(state, moving_force(ratio));
     return are_few(movers) &&
            movers.rest <= ratio * static_cast<double>(result_.end.bodies) * result_.end.mean_contact_force;
@@ -187,6 +207,7 @@ class Relaxation {
 
   /// Cycles of the bodies that move, and of them alone, until they rest too.
   void settle_movers(double ratio) {
+    if (!state_.model.bodies.clumps.empty()) return;  // see few_move
     const Stopwatch watch;
     const double force = moving_force(ratio);
     const std::int64_t end = result_.part_steps + most_part_steps;
@@ -248,6 +269,7 @@ class Relaxation {
 }  // namespace
 
 RelaxResult relax(State& state, const RelaxOptions& options) {
+  state.ledger.reset();  // the way to an equilibrium is not one in time
   return Relaxation(state, options).run();
 }
 

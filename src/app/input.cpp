@@ -19,9 +19,15 @@ namespace {
 /// Whether an override may change what the step rests upon, so that it has to be chosen anew. Without one, a
 /// run goes on with the step that it had, to the bit.
 bool touches_the_step(const std::string& override_text) {
-  constexpr std::array<std::string_view, 3> harmless{"run", "outputs", "histories"};
+  constexpr std::array<std::string_view, 4> harmless{"run", "outputs", "histories", "measures"};
   return std::none_of(harmless.begin(), harmless.end(),
                       [&](std::string_view key) { return override_text.starts_with(key); });
+}
+
+/// Whether an override may change the energy of a state.
+bool touches_the_energy(const std::string& override_text) {
+  return touches_the_step(override_text) && !override_text.starts_with("timestep") &&
+         !override_text.starts_with("damping");
 }
 
 void make_folder(const std::filesystem::path& folder) {
@@ -49,6 +55,12 @@ Input read_input(const Options& options) {
   const auto& overrides = options.overrides;
   if (input.continued && std::any_of(overrides.begin(), overrides.end(), touches_the_step))
     input.state.next_dt = 0;
+  if (input.continued && input.state.ledger &&
+      std::any_of(overrides.begin(), overrides.end(), touches_the_energy)) {
+    input.state.ledger.reset();
+    input.state.settings.notes.emplace_back(
+        "with other settings the scene has another energy: the ledger begins anew");
+  }
   return input;
 }
 

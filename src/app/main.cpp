@@ -74,6 +74,12 @@ int run_program(int argc, char** argv) {
       ->add_option("--output", options.output, "a packing, or, where the name ends in .h5, a state")
       ->required()
       ->type_name("FILE");
+  add_verb(program, "measure", "stress, strain rate, porosity and fabric of regions", options, measure)
+      ->add_option("--region", options.regions,
+                   "a region instead of those of the scene, e.g. \"name: middle, sphere: {centre: [0, 0, "
+                   "0.1], radius: 50 mm}\"; may be repeated")
+      ->type_name("KEYS")
+      ->allow_extra_args(false);
   add_output(*add_verb(program, "run", "the explicit cycle, to the end that the scene names", options, run),
              options);
 #ifdef EIGENGRAIN_PETSC

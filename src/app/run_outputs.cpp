@@ -5,6 +5,8 @@
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/io/state_file.hpp"
+#include "eigengrain/measures/ledger.hpp"
+#include "eigengrain/measures/measure.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -35,6 +37,8 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
       values.wall_moments.push_back(load.moment);
     }
   if (history.wall_positions) values.wall_positions = assembly::wall_centres(state.model);
+  if (history.ledger) values.ledger = measures::ledger_of(state);
+  if (!history.measures.empty()) values.regions = measures::measure(state.model, history.measures);
   return values;
 }
 
@@ -44,12 +48,16 @@ RunOutputs::RunOutputs(const Input& input)
     : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
   const std::int64_t step = input.state.step;
   if (choice_.series_every > 0) {
-    series_.emplace_back(input.folder, input.stem);
+    series_.emplace_back(input.folder, input.stem, io::Series::Of::balls, choice_.series_stress);
     if (!input.state.model.surfaces.empty())
       series_.emplace_back(input.folder, input.stem + "_walls", io::Series::Of::surfaces);
     for (io::Series& series : series_)
       if (input.continued && std::filesystem::exists(series.list_file())) series.continue_from(step);
   }
+  const auto& rules = input.state.settings.contacts;
+  if (std::any_of(rules.begin(), rules.end(), [](const auto& rule) { return rule.bond.has_value(); }))
+    breaks_.emplace(input.folder, input.stem + "-breaks.csv",
+                    input.continued ? std::optional(step) : std::nullopt);
   for (model::History history : input.state.settings.histories) {
     // A state with a name of its own, as relax makes it, is another run: its tables stand beside the scene's.
     if (input.stem != std::filesystem::path(input.state.settings.name).stem())
@@ -75,12 +83,17 @@ void RunOutputs::write_due(const State& state) {
     if (history.due(state.step)) history.add(state, values_for(history.history(), state));
 }
 
+void RunOutputs::write_breaks(std::span<const assembly::BondBreak> breaks) {
+  if (breaks_) breaks_->add(breaks);
+}
+
 bool RunOutputs::checkpoint_due(std::int64_t step) const {
   return choice_.checkpoint_every > 0 && step % choice_.checkpoint_every == 0;
 }
 
 void RunOutputs::save(const State& state) {
   for (io::HistoryFile& history : histories_) history.sync();
+  if (breaks_) breaks_->sync();
   io::write_state(state, state_file_);
   saved_step_ = state.step;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/io/break_file.hpp"
 #include "eigengrain/io/history.hpp"
 #include "eigengrain/io/series.hpp"
 
@@ -9,6 +10,7 @@
 #include <deque>
 #include <filesystem>
 #include <optional>
+#include <span>
 
 namespace eigengrain::app {
 
@@ -22,6 +24,8 @@ class RunOutputs {
   std::int64_t next(std::int64_t step) const;
   /// Frames and lines that are due at the state's step.
   void write_due(const assembly::State& state);
+  /// Bonds that broke, as the cycle hands them out.
+  void write_breaks(std::span<const assembly::BondBreak> breaks);
   bool checkpoint_due(std::int64_t step) const;
   /// Saves the state, after all that was written before it.
   void save(const assembly::State& state);
@@ -36,6 +40,7 @@ class RunOutputs {
   std::int64_t saved_step_ = 0;
   std::deque<io::Series> series_;  ///< balls; and surfaces, if there are any
   std::deque<io::HistoryFile> histories_;
+  std::optional<io::BreakFile> breaks_;  ///< where the scene has bonds
 };
 
 }  // namespace eigengrain::app

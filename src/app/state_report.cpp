@@ -1,6 +1,7 @@
 #include "state_report.hpp"
 
 #include "eigengrain/assembly/energies.hpp"
+#include "eigengrain/measures/ledger.hpp"
 
 #include "text.hpp"
 
@@ -22,6 +23,12 @@ void add_balance(nlohmann::ordered_json& report, const assembly::Balance& balanc
 void add_energies(nlohmann::ordered_json& report, const assembly::State& state) {
   const assembly::Energies e = assembly::energies_of(state);
   report["energies"] = {{"kinetic", e.kinetic}, {"elastic", e.elastic}, {"gravitational", e.gravitational}};
+}
+
+void add_ledger(nlohmann::ordered_json& report, const assembly::State& state) {
+  nlohmann::ordered_json& all = report["ledger"];
+  for (const measures::LedgerEntry& entry : measures::entries_of(measures::ledger_of(state)))
+    all[entry.name] = entry.value;
 }
 
 std::string balance_text(const assembly::Balance& balance) {

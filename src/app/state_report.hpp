@@ -12,6 +12,8 @@ namespace eigengrain::app {
 
 void add_balance(nlohmann::ordered_json& report, const assembly::Balance& balance);
 void add_energies(nlohmann::ordered_json& report, const assembly::State& state);
+/// Of a state that keeps one.
+void add_ledger(nlohmann::ordered_json& report, const assembly::State& state);
 std::string balance_text(const assembly::Balance& balance);
 
 }  // namespace eigengrain::app

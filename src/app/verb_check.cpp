@@ -1,3 +1,4 @@
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
@@ -26,6 +27,8 @@ struct GroupSummary {
   std::int64_t contacts = 0;
   std::size_t history_bytes = 0;  ///< a contact; 0 where the law keeps no state
   bool needs_rotation = false;
+  std::int64_t bonds = 0;  ///< that hold
+  bool additive = false;   ///< whether its contacts are bonds beside those of another group
 };
 
 std::vector<GroupSummary> summarise(const assembly::Model& model) {
@@ -40,6 +43,13 @@ std::vector<GroupSummary> summarise(const assembly::Model& model) {
           contact::at_rest(Group::KinematicsType::geometry(placement, group.pairs[c])), group.states[c]));
     result.push_back({std::string(Group::KinematicsType::name), std::string(Group::LawType::name), group.rule,
                       acting, std::is_empty_v<State> ? 0 : sizeof(State), group.law.needs_rotation()});
+    if constexpr (contact::BondLaw<typename Group::LawType>) {
+      GroupSummary& summary = result.back();
+      summary.bonds = std::count_if(group.states.begin(), group.states.end(),
+                                    [](const State& state) { return state.bonded(); });
+      summary.additive = Group::LawType::additive;
+      if (!summary.additive) summary.law = contact::Linear::name;
+    }
   });
   return result;
 }
@@ -73,6 +83,7 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
     parts.emplace_back("motion of walls");
   if (scene.gravity.isZero(0)) parts.emplace_back("gravity");
   if (scene.local_damping == 0) parts.emplace_back("damping");
+  if (model.bodies.clumps.empty()) parts.emplace_back("clumps");
   return parts;
 }
 
@@ -82,7 +93,8 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
   std::vector<std::string> parts;
   const auto acts = [](const model::ContactRule& rule) { return rule.law != "none"; };
   if (std::any_of(scene.contacts.begin(), scene.contacts.end(), acts)) parts.emplace_back("search");
-  for (const GroupSummary& g : groups) parts.push_back(fmt::format("{} {} forces", g.kinematics, g.law));
+  for (const GroupSummary& g : groups)
+    parts.push_back(fmt::format("{} {} {}forces", g.kinematics, g.law, g.additive ? "bond " : ""));
   if (!scene.gravity.isZero(0)) parts.emplace_back("gravity");
   if (scene.local_damping > 0) parts.emplace_back("local damping");
   const auto moves = [](model::FixedComponents fixed) { return fixed.translation() != 7; };
@@ -90,6 +102,8 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
     parts.emplace_back("translation");
   if (!model.wall_motions.empty()) parts.emplace_back("motion of walls");
   if (unknowns.rotations() > 0) parts.emplace_back("rotation");
+  if (!model.bodies.clumps.empty()) parts.emplace_back("motion of clumps");
+  if (!model.bodies.orientation.empty()) parts.emplace_back("orientation");
   return parts;
 }
 
@@ -148,10 +162,13 @@ ordered_json to_json(const Report& report) {
                       {"law", g.law},
                       {"rule", g.rule},
                       {"contacts", g.contacts},
+                      {"bonds", g.bonds},
                       {"history_bytes", g.history_bytes}});
   return {{"bodies", report.model.bodies.size()},
+          {"clumps", report.model.bodies.clumps.size()},
           {"walls", report.model.wall_count()},
           {"contacts", report.system.elements.size()},
+          {"bonds", assembly::count_bonds(report.model)},
           {"unknowns", report.free},
           {"translations", report.unknowns.blocks() - report.unknowns.rotations()},
           {"rotations", report.unknowns.rotations()},
@@ -172,17 +189,26 @@ void print(const Report& report) {
   fmt::print("{} is in order. The model will consist of\n", report.scene.name);
   fmt::print("  bodies      {}, {}\n", counted(report.model.bodies.size(), "ball", "balls"),
              radii_text(report.model.bodies));
+  if (const model::Clumps& clumps = report.model.bodies.clumps; !clumps.empty())
+    fmt::print("  clumps      {}, of {} of these balls\n", counted(clumps.size(), "clump", "clumps"),
+               grouped(static_cast<std::int64_t>(clumps.member.size())));
   for (const std::string& wall : assembly::wall_names(report.model)) fmt::print("  wall        {}\n", wall);
-  for (const GroupSummary& g : report.groups)
+  for (const GroupSummary& g : report.groups) {
     fmt::print(
-        "  contacts    {} {}, {} by {}, {}\n", grouped(g.contacts), g.kinematics, g.law,
-        rule_text(report.scene, g.rule),
+        "  {}    {} {}, {} by {}, {}\n", g.additive ? "bonds   " : "contacts", grouped(g.contacts),
+        g.kinematics, g.law, rule_text(report.scene, g.rule),
         g.history_bytes == 0 ? "no history" : fmt::format("{} bytes of history each", g.history_bytes));
+    if (g.bonds > 0 && !g.additive) fmt::print("  bonds       {} of these contacts\n", grouped(g.bonds));
+  }
+  if (assembly::count_bonds(report.model) == 0 &&
+      std::any_of(report.scene.contacts.begin(), report.scene.contacts.end(),
+                  [](const model::ContactRule& rule) { return rule.bond.has_value(); }))
+    fmt::print("  bonds       none: no two balls of a rule with bonds are within its gap\n");
   fmt::print("  unknowns    {}: {} of translation, {} of rotation (vectors)\n", grouped(report.free),
              grouped(report.unknowns.blocks() - report.unknowns.rotations()),
              grouped(report.unknowns.rotations()));
   if (report.set_aside > 0)
-    fmt::print("  set aside   {} without acting contacts\n", counted(report.set_aside, "ball", "balls"));
+    fmt::print("  set aside   {} without acting contacts\n", counted(report.set_aside, "body", "bodies"));
   fmt::print("  passes      {}\n", fmt::join(report.steps, ", "));
   print_settings(report.scene);
   fmt::print("left out, as nothing here needs it: {}\n",

@@ -30,6 +30,7 @@ std::vector<std::string> lost_in_a_packing(const model::Bodies& bodies) {
   const auto& fixed = bodies.fixed;
   if (std::any_of(fixed.begin(), fixed.end(), [](auto f) { return f != model::FixedComponents(); }))
     lost.emplace_back("fixed components");
+  if (!bodies.clumps.empty()) lost.emplace_back("clumps");
   if (!bodies.velocity.empty() || !bodies.spin.empty()) lost.emplace_back("velocities");
   return lost;
 }

@@ -1,4 +1,5 @@
 #include "eigengrain/base/error.hpp"
+#include "eigengrain/io/break_file.hpp"
 #include "eigengrain/io/state_file.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/relaxation/relax.hpp"
@@ -56,7 +57,17 @@ void relax(const Options& options) {
   io::write_state(input.state, file);
   auto report = to_json(result, input.state);
   report["state"] = file.string();
+  if (!input.state.breaks.empty()) report["bonds_broken"] = input.state.breaks.size();
   write_json(options.json, report);
+  if (!input.state.breaks.empty()) {
+    // Where a run from the relaxed state goes on with the table. Relaxation has steps, but no time.
+    for (assembly::BondBreak& found : input.state.breaks) {
+      found.step = input.state.step;
+      found.time = input.state.time;
+    }
+    io::BreakFile(input.folder, input.stem + "-relaxed-breaks.csv", std::nullopt).add(input.state.breaks);
+    fmt::print("{} broke on the way\n", counted(std::ssize(input.state.breaks), "bond", "bonds"));
+  }
   fmt::print("{}: {}{} in {} ({}), {} of Newton\n{}\nstate: {}\n", input.state.settings.name,
              counted(result.explicit_steps, "explicit step", "explicit steps"),
              result.part_steps > 0 ? fmt::format(" and {} of a few balls", grouped(result.part_steps)) : "",

@@ -1,9 +1,11 @@
 #include "eigengrain/assembly/balance.hpp"
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/cycle.hpp"
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/cycle/watch.hpp"
+#include "eigengrain/measures/ledger.hpp"
 
 #include "input.hpp"
 #include "interrupt.hpp"
@@ -19,8 +21,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace eigengrain::app {
 namespace {
@@ -100,6 +104,7 @@ class Run {
 
   void go() {
     note_interrupts();
+    outputs_.write_breaks(take_breaks());
     outputs_.write_due(state());
     outputs_.save(state());
     if (goal_.wants_balance() && state().step % steps_between_looks == 0)
@@ -107,6 +112,7 @@ class Run {
     while (!goal_.reached(state()) && interrupted() == 0) {
       const std::int64_t target = std::min({next_look(), outputs_.next(state().step), goal_.last_step()});
       step_to(target);
+      outputs_.write_breaks(take_breaks());
       attend();
     }
     look();
@@ -120,8 +126,15 @@ class Run {
   const RunOutputs& outputs() const { return outputs_; }
   std::int64_t steps() const { return state().step - first_step_; }
   double seconds() const { return seconds_; }
+  std::int64_t broken() const { return broken_; }
 
  private:
+  std::vector<assembly::BondBreak> take_breaks() {
+    std::vector<assembly::BondBreak> breaks = cycle_.take_breaks();
+    broken_ += std::ssize(breaks);
+    return breaks;
+  }
+
   std::int64_t next_look() const { return (state().step / steps_between_looks + 1) * steps_between_looks; }
 
   void look() {
@@ -175,14 +188,27 @@ class Run {
   StepVerdict verdict_;
   Progress progress_;
   std::int64_t first_step_;
-  double seconds_ = 0;  ///< of the cycle alone
+  double seconds_ = 0;       ///< of the cycle alone
+  std::int64_t broken_ = 0;  ///< bonds, in this call
 };
+
+/// A ledger is kept while a table asks for it. One that a state brings along goes on.
+void attend_ledger(State& state) {
+  const auto& tables = state.settings.histories;
+  const bool wanted =
+      std::any_of(tables.begin(), tables.end(), [](const model::History& table) { return table.ledger; });
+  if (!wanted)
+    state.ledger.reset();
+  else if (!state.ledger)
+    measures::begin_ledger(state);
+}
 
 }  // namespace
 
 void run(const Options& options) {
   Input input = read_input(options);
   print_notes(input.state.settings);
+  attend_ledger(input.state);
   Run run(std::move(input));
   if (const std::string warning = warning_of(run.verdict()); !warning.empty())
     fmt::print(stderr, "{}\n", warning);
@@ -199,12 +225,17 @@ void run(const Options& options) {
                                 {"lists", state.list.rebuilds}};
   add_balance(report, balance);
   add_energies(report, state);
+  if (state.ledger) add_ledger(report, state);
+  const std::int64_t bonds = assembly::count_bonds(state.model);
+  if (bonds > 0 || run.broken() > 0) report["bonds"] = {{"intact", bonds}, {"broken", run.broken()}};
   report["state"] = run.outputs().state_file().string();
   write_json(options.json, report);
 
   fmt::print("{}: {} in {}, t = {:.6g} s", state.settings.name, counted(run.steps(), "step", "steps"),
              duration_text(run.seconds()), state.time);
   if (rate > 0) fmt::print(", {:.3g} million ball steps a second", 1e-6 * rate);
+  if (bonds > 0 || run.broken() > 0)
+    fmt::print("\nbonds: {} intact, {} broken", grouped(bonds), grouped(run.broken()));
   fmt::print("\n{}\nstate: {}\n", balance_text(balance), run.outputs().state_file().string());
   if (interrupted() != 0) {
     fmt::print(stderr, "interrupted; continue with: eigengrain run {}\n",

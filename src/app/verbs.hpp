@@ -13,6 +13,7 @@ struct Options {
   std::string json;                    ///< file for the result; empty: none
   std::vector<std::string> overrides;  ///< key=value
   std::string petsc;                   ///< options for PETSc
+  std::vector<std::string> regions;    ///< of measure: instead of those of the scene
   std::string output;                  ///< folder of results; empty: see read_input. Of generate: a file
   double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
   std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
@@ -21,6 +22,7 @@ struct Options {
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.
 void check(const Options& options);
 void generate(const Options& options);
+void measure(const Options& options);
 void timestep(const Options& options);
 void run(const Options& options);
 void relax(const Options& options);

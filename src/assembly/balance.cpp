@@ -1,6 +1,7 @@
 #include "eigengrain/assembly/balance.hpp"
 
 #include "eigengrain/assembly/acting.hpp"
+#include "eigengrain/assembly/clump_members.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,39 +34,53 @@ double rounding_along(const Vec3& n, const Vec3& x) {
 
 Survey survey(const Model& model) {
   Survey result{std::vector<Touch>(static_cast<std::size_t>(model.bodies.size())), 0, 0.0};
-  for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
+  const contact::Placement placement = model.placement();
+  for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
-    const contact::ContactMotion motion = contact::at_rest(geometry);
-    typename Group::State discarded;
-    result.force += group.law.evaluate(motion, group.states[c], discarded).force.norm();
+    result.force += contact::spring_force(group.law, placement, pair, geometry, group.states[c]).force.norm();
     ++result.contacts;
-    const double k = group.law.stiffness(motion, group.states[c]).normal;
-    double rounding = rounding_along(motion.normal, model.bodies.position[pair.a]);
+    const double k = group.law.stiffness(contact::at_rest(geometry), group.states[c]).normal;
+    double rounding = rounding_along(geometry.normal, model.bodies.position[pair.a]);
     if constexpr (Kinematics::second_is_body)
-      rounding += rounding_along(motion.normal, model.bodies.position[pair.b]);
+      rounding += rounding_along(geometry.normal, model.bodies.position[pair.b]);
     const auto add = [&](std::int32_t body) {
       ++result.touch[body].contacts;
       result.touch[body].rounding += k * k * rounding;
     };
-    add(pair.a);
+    const model::Clumps& clumps = model.bodies.clumps;
+    const std::int32_t first = clumps.owner(pair.a);
+    add(first);
     if constexpr (Kinematics::second_is_body)
-      if (pair.b != pair.a) add(pair.b);
+      if (const std::int32_t second = clumps.owner(pair.b); second != first) add(second);
   });
   return result;
 }
 
+/// The size that turns a moment into a force, m.
+double size_of(const model::Bodies& bodies, std::int32_t row) {
+  const std::int32_t clump = bodies.clumps.of(row);
+  return clump == model::Clumps::none ? bodies.radius[row] : bodies.clumps.radius[clump];
+}
+
 }  // namespace
 
-Balance balance_of(const Model& model, const BodyForces& contacts) {
+Balance balance_of(const Model& model, const BodyForces& of_balls) {
   const model::Bodies& bodies = model.bodies;
+  BodyForces gathered;
+  if (!bodies.clumps.empty()) {
+    gathered = of_balls;
+    gather_members(bodies, {}, gathered);
+  }
+  const BodyForces& contacts = bodies.clumps.empty() ? of_balls : gathered;
   const Survey found = survey(model);
   Balance result{.contacts = found.contacts};
   double floor = 0;
   for (std::size_t i = 0; i < found.touch.size(); ++i) {
+    const auto row = static_cast<std::int32_t>(i);
     const model::FixedComponents fixed = bodies.fixed[i];
-    if (fixed.all()) continue;
+    if (fixed.all() || bodies.clumps.owner(row) != row) continue;
     if (found.touch[i].contacts == 0) {
       if (!model::free_part(model.gravity, fixed.translation()).isZero(0)) ++result.unsupported;
       continue;
@@ -77,16 +92,20 @@ Balance balance_of(const Model& model, const BodyForces& contacts) {
     result.max = std::max(result.max, force);
     floor += std::sqrt(found.touch[i].rounding);
     if (contacts.moment.empty()) continue;
-    const double moment = model::free_part(contacts.moment[i], fixed.rotation()).norm() / bodies.radius[i];
+    const double moment =
+        model::free_part(contacts.moment[i], fixed.rotation()).norm() / size_of(bodies, row);
     result.moment_mean += moment;
     result.moment_max = std::max(result.moment_max, moment);
   }
-  if (found.contacts == 0 || result.bodies == 0 || found.force == 0) {
+  const auto count = static_cast<double>(result.bodies);
+  if (found.contacts > 0) result.mean_contact_force = found.force / static_cast<double>(found.contacts);
+  // Bonds act before they bear anything: where nothing does yet, what is unbalanced is all there is.
+  if (found.contacts > 0 && found.force == 0 && result.bodies > 0)
+    result.mean_contact_force = std::max(result.mean, result.moment_mean) / count;
+  if (result.mean_contact_force == 0 || result.bodies == 0) {
     result.mean = result.max = result.moment_mean = result.moment_max = 0;
     return result;
   }
-  result.mean_contact_force = found.force / static_cast<double>(found.contacts);
-  const auto count = static_cast<double>(result.bodies);
   result.mean /= count * result.mean_contact_force;
   result.moment_mean /= count * result.mean_contact_force;
   result.max /= result.mean_contact_force;

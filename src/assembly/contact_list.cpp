@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/contact_list.hpp"
 
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
@@ -25,25 +26,25 @@ using contact::AnyGroup;
 using contact::ContactGroup;
 using contact::Pair;
 
-/// The values of all parameters of a law: those of the rule, and defaults for those left out at the end.
-std::vector<double> completed(const model::ContactRule& rule, std::int32_t index,
-                              std::span<const contact::ParameterDescription> parameters) {
-  std::vector<double> values = rule.parameters;
-  while (values.size() < parameters.size() && parameters[values.size()].default_value)
-    values.push_back(*parameters[values.size()].default_value);
-  if (values.size() != parameters.size())
-    throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
-                                 rule.parameters.size(), rule.law, parameters.size()));
-  return values;
+/// Whether the bonds of a rule are in the group of its law (a contact bond), not beside it.
+bool bond_is_law(const model::ContactRule& rule) {
+  bool result = false;
+  for_each_type(contact::BondTypes{}, [&](auto tag) {
+    using Bond = typename decltype(tag)::type;
+    if (Bond::name == rule.bond->kind) result = !Bond::additive;
+  });
+  return result;
 }
 
 template <class Kinematics>
 AnyGroup new_group(const model::ContactRule& rule, std::int32_t index) {
   std::optional<AnyGroup> group;
+  if constexpr (std::is_same_v<Kinematics, contact::BallBall>)
+    if (rule.bond && bond_is_law(rule)) return new_bond_group(rule, index);
   for_each_type(contact::LawTypes{}, [&](auto tag) {
     using Law = typename decltype(tag)::type;
     if (group || Law::name != rule.law) return;
-    const std::vector<double> values = completed(rule, index, Law::parameters);
+    const std::vector<double> values = law_values(rule, index, Law::parameters);
     if (Law::serves(values)) group = ContactGroup<Kinematics, Law>{Law::from_values(values), index, {}, {}};
   });
   if (!group) throw InputError(fmt::format("contacts[{}]: there is no law \"{}\"", index, rule.law));
@@ -92,6 +93,11 @@ class PairsByRule {
   std::vector<std::vector<Pair>> pairs_;
 };
 
+/// Balls of one clump never touch; but they may touch the clump's own image.
+bool within_clump(const model::Clumps& clumps, const search::CandidatePair& pair) {
+  return !clumps.empty() && clumps.same(pair.a, pair.b) && pair.image == model::Image{};
+}
+
 PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, double reach) {
   const model::Bodies& bodies = model.bodies;
   PairsByRule result(scene);
@@ -99,6 +105,7 @@ PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, doubl
        search::candidate_pairs(bodies.position, bodies.radius, model.cell, reach)) {
     const auto a = static_cast<std::size_t>(found.a);
     const auto b = static_cast<std::size_t>(found.b);
+    if (within_clump(bodies.clumps, found)) continue;
     if (bodies.position[b] + model.cell.shift(found.image) == bodies.position[a])
       throw InputError(fmt::format("balls {} and {} have the same centre ({}, {}, {}); move one of them",
                                    bodies.identity[a], bodies.identity[b], bodies.position[a].x(),
@@ -308,22 +315,33 @@ void list_kind(PairsByRule pairs, const model::Scene& scene, const contact::Cont
   }
 }
 
-/// Moves the centres into the cell, and the images of the contacts with them.
+/// Moves the centres into the cell, and the images of the contacts with them. A clump moves as a whole, with
+/// its own centre; balls of it may then lie beyond the cell.
 void wrap(Model& model) {
   const model::PeriodicCell& cell = model.cell;
   if (!cell.any()) return;
   constexpr double farthest = 1e9;  // cells
   std::vector<std::array<int, 3>> moved(model.bodies.position.size());
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    Vec3& x = model.bodies.position[i];
+  model::Bodies& bodies = model.bodies;
+  const std::vector<Vec3> centres = bodies.clumps.position;  // before they move
+  const auto move = [&](const Vec3& reference, Vec3& x, std::array<int, 3>& by) {
     for (int k = 0; k < 3; ++k) {
       if (!cell.periodic[k]) continue;
       // A centre that is not a number, or lost, stays: the search finds it and says so.
-      const double cells = std::floor((x[k] - cell.origin[k]) / cell.lengths[k]);
+      const double cells = std::floor((reference[k] - cell.origin[k]) / cell.lengths[k]);
       if (!(std::abs(cells) < farthest)) continue;
-      moved[i][k] = static_cast<int>(cells);
-      x[k] -= moved[i][k] * cell.lengths[k];
+      by[k] = static_cast<int>(cells);
+      x[k] -= by[k] * cell.lengths[k];
     }
+  };
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    const std::int32_t clump = bodies.clumps.of(static_cast<std::int32_t>(i));
+    const Vec3 reference = clump == model::Clumps::none ? bodies.position[i] : centres[clump];
+    move(reference, bodies.position[i], moved[i]);
+  }
+  for (Vec3& centre : bodies.clumps.position) {
+    std::array<int, 3> by{};
+    move(Vec3(centre), centre, by);
   }
   model.contacts.for_each_group([&](auto& group) {
     if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body) {
@@ -357,6 +375,17 @@ void sort_contacts(Group& group) {
 
 }  // namespace
 
+std::vector<double> law_values(const model::ContactRule& rule, std::int32_t index,
+                               std::span<const contact::ParameterDescription> parameters) {
+  std::vector<double> values = rule.parameters;
+  while (values.size() < parameters.size() && parameters[values.size()].default_value)
+    values.push_back(*parameters[values.size()].default_value);
+  if (values.size() != parameters.size())
+    throw InputError(fmt::format("contacts[{}]: {} parameters; the law \"{}\" takes {}", index,
+                                 rule.parameters.size(), rule.law, parameters.size()));
+  return values;
+}
+
 AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, std::int32_t index) {
   std::optional<AnyGroup> group;
   for_each_type(contact::KinematicsTypes{}, [&](auto tag) {
@@ -369,10 +398,13 @@ AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, 
 
 bool needs_rotation(const model::Scene& scene) {
   bool turns = false;
-  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
-    if (scene.contacts[r].law == "none") continue;
-    const AnyGroup group = new_group<contact::BallBall>(scene.contacts[r], static_cast<std::int32_t>(r));
+  const auto ask = [&](const AnyGroup& group) {
     turns = turns || std::visit([](const auto& g) { return g.law.needs_rotation(); }, group);
+  };
+  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
+    const model::ContactRule& rule = scene.contacts[r];
+    if (rule.bond) ask(new_bond_group(rule, static_cast<std::int32_t>(r)));
+    if (rule.law != "none") ask(new_group<contact::BallBall>(rule, static_cast<std::int32_t>(r)));
   }
   return turns;
 }
@@ -388,6 +420,7 @@ void list_contacts(Model& model, const model::Scene& scene, double reach, NewCon
                                 touching);
   list_kind<contact::BallFacet>(ball_facet_pairs(scene, model, before, reach), scene, before, model,
                                 touching_only, touching);
+  carry_bonds(before, model);
 }
 
 void begin_list(State& state) {

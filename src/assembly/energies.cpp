@@ -1,12 +1,38 @@
 #include "eigengrain/assembly/energies.hpp"
 
+#include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/forces.hpp"
 
 namespace eigengrain::assembly {
+namespace {
+
+/// Adds what a clump has, with its tensor of inertia as it lies at t.
+void add_clump(const State& state, std::int32_t clump, const BodyForces& gathered, Energies& result) {
+  const model::Bodies& bodies = state.model.bodies;
+  const model::Clumps& clumps = bodies.clumps;
+  const auto c = static_cast<std::size_t>(clump);
+  const auto holder = static_cast<std::size_t>(clumps.holder(clump));
+  const double m = clumps.mass[c];
+  const Vec3& v = clumps.velocity[c];
+  const Vec3 a = gathered.force[holder] / m + state.model.gravity;
+  const model::FixedComponents fixed = bodies.fixed[holder];
+  const Vec3 w = model::angular_velocity(clumps, clump);
+  result.kinetic += 0.5 * m * v.squaredNorm() + 0.5 * w.dot(clumps.angular_momentum[c]);
+  result.kinetic_product += 0.5 * m * v.dot(v + model::free_part(state.dt * a, fixed.translation()));
+  // ½ w₋·L₊, as I is the same for both.
+  Vec3 momentum = clumps.angular_momentum[c];
+  if (fixed.rotation() == 0) momentum += state.dt * gathered.moment[holder];
+  result.kinetic_product += 0.5 * w.dot(momentum);
+  result.gravitational -= m * state.model.gravity.dot(clumps.position[c]);
+}
+
+}  // namespace
+
 Energies energies_of(const State& state) {
   const model::Bodies& bodies = state.model.bodies;
   Energies result{.elastic = elastic_energy(state.model)};
   for (std::size_t i = 0; i < bodies.position.size(); ++i) {
+    if (bodies.clumps.of(static_cast<std::int32_t>(i)) != model::Clumps::none) continue;
     const double m = bodies.mass[i];
     const Vec3& v = bodies.velocity[i];
     const Vec3 a = state.force[i] / m + state.model.gravity;
@@ -22,6 +48,10 @@ Energies energies_of(const State& state) {
         0.5 * inertia *
         w.dot(w + model::free_part(state.dt / inertia * state.moment[i], bodies.fixed[i].rotation()));
   }
+  if (bodies.clumps.empty()) return result;
+  BodyForces gathered{state.force, state.moment};
+  gather_members(bodies, {}, gathered);
+  for (std::int32_t c = 0; c < bodies.clumps.size(); ++c) add_clump(state, c, gathered, result);
   return result;
 }
 

@@ -1,20 +1,19 @@
 #include "eigengrain/assembly/forces.hpp"
 
+#include "eigengrain/assembly/dissipation.hpp"
 #include "eigengrain/assembly/state.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/contact/facet_choice.hpp"
+#include "eigengrain/contact/orientation.hpp"
+
+#include "flat.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <type_traits>
 #include <utility>
-
-#ifdef __SANITIZE_ADDRESS__
-#define EIGENGRAIN_FLAT
-#else
-#define EIGENGRAIN_FLAT __attribute__((flatten))
-#endif
 
 namespace eigengrain::assembly {
 namespace {
@@ -25,15 +24,33 @@ struct TrialState {
     position.reserve(model.bodies.position.size());
     for (std::size_t i = 0; i < model.bodies.position.size(); ++i)
       position.emplace_back(model.bodies.position[i] + displacement.translation[i]);
+    orientation = turned_orientations(model.bodies, displacement.rotation);
   }
-  Trial trial() const { return {position, moved.translation, moved.rotation, 1.0}; }
+  Trial trial() const { return {position, moved.translation, moved.rotation, 1.0, orientation}; }
 
   const Displacement& moved;
   std::vector<Vec3> position;
+  std::vector<Quat> orientation;
 };
 
 Displacement no_displacement(const Model& model) {
   return {std::vector<Vec3>(model.bodies.position.size(), Vec3::Zero()), {}};
+}
+
+template <class Group>
+BondBreak break_of(const Group& group, std::size_t c, const model::Bodies& bodies,
+                   const contact::Placement& placement, const contact::ContactGeometry& geometry,
+                   std::optional<contact::BreakMode> mode) {
+  EIGENGRAIN_ASSERT(mode.has_value());
+  const auto a = static_cast<std::size_t>(group.pairs[c].a);
+  const auto b = static_cast<std::size_t>(group.pairs[c].b);
+  BondBreak found{.first = bodies.identity[a],
+                  .second = bodies.identity[b],
+                  .place = placement.position[a] + geometry.lever_a,
+                  .normal = geometry.normal,
+                  .mode = mode.value_or(contact::BreakMode::tension),
+                  .rule = group.rule};
+  return found;
 }
 
 /// Bodies of a chunk: few enough for the caches and for several threads, many enough that most contacts stay
@@ -43,6 +60,13 @@ std::int64_t chunk_of_bodies(std::int64_t bodies) {
 }
 
 }  // namespace
+
+std::vector<Quat> turned_orientations(const model::Bodies& bodies, std::span<const Vec3> rotation) {
+  std::vector<Quat> result = bodies.orientation;
+  if (!rotation.empty())
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = contact::turned(result[i], rotation[i]);
+  return result;
+}
 
 ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns) {
   const std::int64_t bodies = model.bodies.size();
@@ -80,15 +104,11 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
 }
 
 template <bool turns, bool commit, class Group>
-void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement,
-                                const Trial& trial, BodyForces& sum) {
+void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const model::Bodies& bodies,
+                                const contact::Placement& placement, const Trial& trial, BodyForces& sum) {
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using ContactState = typename std::decay_t<Group>::State;
-  if constexpr (commit && std::is_same_v<Kinematics, contact::BallFacet>)
-    for_chunks(std::ssize(sum.force), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
-      contact::follow_facets(placement, group, static_cast<std::size_t>(plan.starts[chunk]),
-                             static_cast<std::size_t>(plan.starts[chunk + 1]));
-    });
+  using Law = typename std::decay_t<Group>::LawType;
   const auto contacts_of = [&](std::int64_t chunk) {
     for (std::int64_t index = plan.starts[chunk]; index < plan.starts[chunk + 1]; ++index) {
       const auto c = static_cast<std::size_t>(index);
@@ -105,8 +125,12 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
         continue;
       }
       ContactState next;
-      const contact::ContactForce f =
-          group.law.evaluate(motion_in<Kinematics>(group.law, placement, trial, pair, geometry), old, next);
+      const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+      const contact::ContactForce f = group.law.evaluate(motion, old, next);
+      if constexpr (commit && contact::BondLaw<Law>)
+        if (old.bonded() && !next.bonded())
+          broken_in_chunk_[static_cast<std::size_t>(chunk)].push_back(
+              break_of(group, c, bodies, placement, geometry, group.law.failure(motion, old)));
       if constexpr (commit) group.states[c] = next;
       const contact::EndForces ends = contact::end_forces(geometry, f);
       sum.force[pair.a] += ends.force_a;
@@ -123,15 +147,19 @@ void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const conta
       }
     }
   };
-  // The cycle's contacts of balls, which are nearly all there are, in one flat piece: the small functions of
-  // kinematics and laws are many, and calls among them pass everything through memory. It takes the compiler
-  // long, and under sanitizers hundreds of megabytes.
+  if constexpr (commit && contact::BondLaw<Law>) broken_in_chunk_.resize(plan.starts.size());
+  // The cycle's contacts of balls, which are nearly all there are, in one flat piece.
   if constexpr (commit && Kinematics::second_is_body)
     for_chunks(std::ssize(sum.force), chunk_size_,
                [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT { contacts_of(chunk); });
   else
     for_chunks(std::ssize(sum.force), chunk_size_,
                [&](std::int64_t, std::int64_t, std::int64_t chunk) { contacts_of(chunk); });
+  if constexpr (commit && contact::BondLaw<Law>)
+    for (std::vector<BondBreak>& chunk : broken_in_chunk_) {
+      broken_.insert(broken_.end(), chunk.begin(), chunk.end());
+      chunk.clear();
+    }
 }
 
 template <bool turns, bool commit, class ModelRef>
@@ -140,10 +168,11 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   sum.force.assign(bodies, Vec3::Zero());
   sum.moment.assign(turns ? bodies : 0, Vec3::Zero());
+  if constexpr (commit) broken_.clear();
   const contact::Placement placement = placement_in(model, trial);
   auto plan = plans_.begin();
   model.contacts.for_each_group(
-      [&](auto& group) { sum_group<turns, commit>(*plan++, group, placement, trial, sum); });
+      [&](auto& group) { sum_group<turns, commit>(*plan++, group, model.bodies, placement, trial, sum); });
   add_foreign(sum);
 }
 
@@ -164,8 +193,24 @@ void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForce
     sum_groups<false, false>(model, trial, sum);
 }
 
-void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum) {
+void ContactForceSum::follow_facets(Model& model, const contact::Placement& placement) const {
+  auto plan = plans_.begin();
+  model.contacts.for_each_group([&](auto& group) {
+    const GroupPlan& of_group = *plan++;
+    if constexpr (std::is_same_v<typename std::decay_t<decltype(group)>::KinematicsType, contact::BallFacet>)
+      for_chunks(model.bodies.size(), chunk_size_, [&](std::int64_t, std::int64_t, std::int64_t chunk) {
+        contact::follow_facets(placement, group, static_cast<std::size_t>(of_group.starts[chunk]),
+                               static_cast<std::size_t>(of_group.starts[chunk + 1]));
+      });
+  });
+}
+
+void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum,
+                              contact::Dissipation* dissipated) {
   try {
+    const contact::Placement placement = placement_in(model, trial);
+    follow_facets(model, placement);
+    if (dissipated != nullptr) *dissipated += dissipation_in(model, placement, trial);
     if (turns_)
       sum_groups<true, true>(model, trial, sum);
     else
@@ -178,8 +223,10 @@ void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum)
 void renew_forces(State& state) {
   const model::Bodies& bodies = state.model.bodies;
   BodyForces sum;
-  ContactForceSum(state.model, state.turns())
-      .advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0}, sum);
+  ContactForceSum contacts(state.model, state.turns());
+  contacts.advance(state.model, {bodies.position, bodies.velocity, bodies.spin, 0.0, bodies.orientation},
+                   sum);
+  note_breaks(state, contacts.broken());
   state.force = std::move(sum.force);
   state.moment = std::move(sum.moment);
 }
@@ -199,7 +246,7 @@ double elastic_energy(const Model& model, const Displacement& displacement) {
   constexpr std::int64_t chunk_size = 4096;
   const TrialState state(model, displacement);
   const Trial trial = state.trial();
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = model.placement(trial.position, trial.orientation);
   double energy = 0;
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
@@ -229,10 +276,11 @@ std::vector<WallLoad> wall_loads(const Model& model) {
     using Kinematics = typename Group::KinematicsType;
     if constexpr (!Kinematics::second_is_body) {
       for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-        const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
-        const contact::EndForces ends =
-            contact::end_forces(geometry, contact::force_now(group.law, geometry, group.states[c]));
-        WallLoad& load = loads[static_cast<std::size_t>(Kinematics::wall(placement, group.pairs[c]))];
+        const contact::Pair& pair = group.pairs[c];
+        const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+        const contact::EndForces ends = contact::end_forces(
+            geometry, contact::force_now(group.law, placement, pair, geometry, group.states[c]));
+        WallLoad& load = loads[static_cast<std::size_t>(Kinematics::wall(placement, pair))];
         load.force += ends.force_b;
         load.moment += ends.moment_b;
       }

@@ -244,6 +244,27 @@ std::vector<Chunk> empty_chunks(const Unknowns& unknowns) {
   return chunks;
 }
 
+/// A θ that is not along the axes of space, and where it stands in a padded vector.
+struct OwnAxes {
+  std::int64_t place;
+  Mat3 axes;  ///< columns in space
+};
+
+/// [chunks] of the blocks of each; empty where all are along the axes of space.
+std::vector<std::vector<OwnAxes>> own_axes(const Unknowns& unknowns, const product::Layout& layout,
+                                           const std::vector<Chunk>& chunks) {
+  std::vector<std::vector<OwnAxes>> result;
+  if (!unknowns.has_axes()) return result;
+  for (const Chunk& chunk : chunks) {
+    std::vector<OwnAxes>& found = result.emplace_back();
+    for (std::int32_t block = chunk.first_block; block < chunk.last_block; ++block)
+      if (unknowns.is_rotation(block))
+        if (const Mat3* axes = unknowns.axes(unknowns.body(block)))
+          found.push_back({std::int64_t{4} * layout.slot[static_cast<std::size_t>(block)], *axes});
+  }
+  return result;
+}
+
 std::int64_t bytes_of(const std::vector<Chunk>& chunks) {
   const auto bytes = [](const auto& records) {
     return (records.inner.size() + records.cut.size()) * sizeof(records.inner[0]);
@@ -268,9 +289,32 @@ struct StiffnessProduct::Data {
     for_chunks(std::ssize(chunks), 1, [&](std::int64_t c, std::int64_t, std::int64_t) { act(chunks[c]); });
   }
 
+  /// The same with the number of the chunk.
+  template <class Act>
+  void for_each_numbered_chunk(const Act& act) {
+    for_chunks(std::ssize(chunks), 1, [&](std::int64_t c, std::int64_t, std::int64_t) { act(c); });
+  }
+  /// x of a chunk from its own axes to those of space.
+  void to_space(std::int64_t chunk) {
+    for (const OwnAxes& own : axes[static_cast<std::size_t>(chunk)]) {
+      Eigen::Map<Vec3> v(x.data() + own.place);
+      v = (own.axes * v).eval();
+    }
+  }
+  /// Sums of a chunk from the axes of space to their own.
+  void to_own_axes(std::int64_t chunk, double* sums) const {
+    const std::int64_t start =
+        std::int64_t{layout.stride} * chunks[static_cast<std::size_t>(chunk)].first_body;
+    for (const OwnAxes& own : axes[static_cast<std::size_t>(chunk)]) {
+      Eigen::Map<Vec3> v(sums + (own.place - start));
+      v = (own.axes.transpose() * v).eval();
+    }
+  }
+
   product::Layout layout;
   std::vector<Chunk> chunks;
   PaddedVector x;
+  std::vector<std::vector<OwnAxes>> axes;  ///< [chunks], or empty
   const product::Kernel* kernel = &product::best_kernel();
   std::int64_t record_bytes = 0;
   std::int64_t products = 0;
@@ -280,8 +324,9 @@ StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, std::span<const Con
                                    std::span<const double> scale) {
   const std::int32_t bodies = unknowns.bodies();
   const std::vector<Kind> kinds = kinds_of(elements);
-  // Contacts with shear read rotations even where every body holds its own.
-  const bool turns = std::any_of(kinds.begin(), kinds.end(), [](Kind kind) { return kind != Kind::central; });
+  // Contacts with shear read rotations even where every body holds its own; clumps have them without.
+  const bool turns = unknowns.rotations() > 0 ||
+                     std::any_of(kinds.begin(), kinds.end(), [](Kind kind) { return kind != Kind::central; });
   data_ = std::make_unique<Data>(layout_of(unknowns, turns, scale), bodies, empty_chunks(unknowns));
   EIGENGRAIN_ASSERT(size() == unknowns.size(), size(), unknowns.size());
   const Visits visits(unknowns, bodies, elements);
@@ -291,6 +336,7 @@ StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, std::span<const Con
     chunk.general = make_records<GeneralRecord>(chunk, Kind::general, visits, elements, kinds, bodies);
   });
   data_->record_bytes = bytes_of(data_->chunks);
+  data_->axes = own_axes(unknowns, data_->layout, data_->chunks);
 }
 
 StiffnessProduct::~StiffnessProduct() = default;
@@ -312,11 +358,16 @@ void StiffnessProduct::apply(std::span<const double> x, std::span<double> y) {
   EIGENGRAIN_ASSERT(std::ssize(x) == size() && std::ssize(y) == size(), x.size(), y.size(), size());
   ++d.products;
   // All of x before any of y: a chunk reads the bodies of other chunks.
-  d.for_each_chunk([&](const Chunk& chunk) { d.kernel->pad(d.layout, chunk, x.data(), d.x.data()); });
-  d.for_each_chunk([&](const Chunk& chunk) {
+  d.for_each_numbered_chunk([&](std::int64_t c) {
+    d.kernel->pad(d.layout, d.chunks[static_cast<std::size_t>(c)], x.data(), d.x.data());
+    if (!d.axes.empty()) d.to_space(c);
+  });
+  d.for_each_numbered_chunk([&](std::int64_t c) {
+    const Chunk& chunk = d.chunks[static_cast<std::size_t>(c)];
     const auto bodies = static_cast<std::size_t>(chunk.last_body - chunk.first_body);
     double* sums = zeroed_sums(static_cast<std::size_t>(d.layout.stride) * bodies);
     d.kernel->multiply(d.layout, chunk, d.x.data(), sums);
+    if (!d.axes.empty()) d.to_own_axes(c, sums);
     d.kernel->strip(d.layout, chunk, sums, y.data());
   });
 }

@@ -14,6 +14,7 @@ void set_surroundings(Model& model, const model::Scene& scene) {
   model.cell = scene.cell;
   model.gravity = scene.gravity;
   model.local_damping = scene.local_damping;
+  model.lever_cut = scene.full_levers ? contact::to_surface : contact::to_contact_point;
   model.facets = model::facets_of(scene.surfaces);
   model.surface_places.clear();
   model.facet_trees.clear();

@@ -28,6 +28,12 @@ std::vector<Demand> demands(std::int32_t bodies, std::span<const contact::Contac
 
 Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements)
     : block_(bodies.position.size(), {none, none}) {
+  const model::Clumps& clumps = bodies.clumps;
+  if (!clumps.empty()) axes_of_.assign(bodies.position.size(), none);
+  for (std::int32_t c = 0; c < clumps.size(); ++c) {
+    axes_of_[clumps.holder(c)] = c;
+    axes_.emplace_back(clumps.orientation[c].toRotationMatrix());
+  }
   const std::vector<Demand> demand = demands(bodies.size(), elements);
   const auto number = [&](std::int32_t body, int which, std::uint8_t fixed) {
     if (fixed == 7) return;
@@ -40,13 +46,21 @@ Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::Contact
   for (std::int32_t body = 0; body < bodies.size(); ++body) {
     const model::FixedComponents fixed = bodies.fixed[body];
     const Demand& wanted = demand[body];
+    if (clumps.owner(body) != body) continue;
     if (!wanted.touched) {
       if (!fixed.all()) set_aside_.push_back(body);
       continue;
     }
     number(body, 0, fixed.translation());
-    if (wanted.turned) number(body, 1, fixed.rotation());
+    if (wanted.turned || axes(body) != nullptr) number(body, 1, fixed.rotation());
   }
+}
+
+Mat6 Unknowns::in_own_axes(std::int32_t row_body, std::int32_t column_body, const Mat6& block) const {
+  Mat6 result = block;
+  if (const Mat3* q = axes(row_body)) result.bottomRows<3>() = q->transpose() * block.bottomRows<3>();
+  if (const Mat3* q = axes(column_body)) result.rightCols<3>() = (result.rightCols<3>() * *q).eval();
+  return result;
 }
 
 std::vector<std::int32_t> Unknowns::free_components() const {

@@ -48,18 +48,18 @@ Mat12 consistent_tangent(const ContactGeometry& geometry, const Mat3& curvature,
   const Mat3x12 d_force = -tangent.translation * delta - cross_matrix(force.force) * frame;
   const Mat3x12 d_moment =
       -tangent.rotation * relative_rotation() - tangent.coupling * delta - cross_matrix(force.moment) * frame;
-  const auto moving_lever = [&](const Vec3& lever, double half) -> Mat3x12 {
-    return (half * along + lever.dot(n) * curvature) * delta_branch;
+  const auto moving_lever = [&](const Vec3& lever, double cut) -> Mat3x12 {
+    return (cut * along + lever.dot(n) * curvature) * delta_branch;
   };
-  const auto d_end_moment = [&](const Vec3& lever, double half) -> Mat3x12 {  // d(R × F + M)
-    return cross_matrix(lever) * d_force - cross_matrix(force.force) * moving_lever(lever, half) + d_moment;
+  const auto d_end_moment = [&](const Vec3& lever, double cut) -> Mat3x12 {  // d(R × F + M)
+    return cross_matrix(lever) * d_force - cross_matrix(force.force) * moving_lever(lever, cut) + d_moment;
   };
 
   Mat12 k;
   k.block<3, 12>(u_a, 0) = d_force;
-  k.block<3, 12>(theta_a, 0) = d_end_moment(geometry.lever_a, 0.5);
+  k.block<3, 12>(theta_a, 0) = d_end_moment(geometry.lever_a, geometry.cut);
   k.block<3, 12>(u_b, 0) = -d_force;
-  k.block<3, 12>(theta_b, 0) = -d_end_moment(geometry.lever_b, -0.5);
+  k.block<3, 12>(theta_b, 0) = -d_end_moment(geometry.lever_b, -geometry.cut);
   return k;
 }
 

@@ -73,7 +73,7 @@ NearestPoint nearest_point(const Vec3& x, const model::Facet& facet) {
 }
 
 ContactGeometry ball_feature(const Vec3& x, double r, const model::Facet& facet, FacetFeature feature,
-                             int side, const Vec3& centre) {
+                             int side, const Vec3& centre, double cut) {
   Vec3 n;
   double distance = 0;
   if (feature.kind == Kind::face) {
@@ -85,8 +85,8 @@ ContactGeometry ball_feature(const Vec3& x, double r, const model::Facet& facet,
     n = branch / distance;
   }
   const double overlap = r - distance;
-  const Vec3 lever = (r - 0.5 * overlap) * n;
-  return {n, overlap, lever, x + lever - centre, r};
+  const Vec3 lever = (r - cut * overlap) * n;
+  return {n, overlap, lever, x + lever - centre, r, cut};
 }
 
 Mat3 feature_curvature(const Vec3& x, const model::Facet& facet, FacetFeature feature) {

@@ -16,13 +16,23 @@ void add_row(std::vector<Vec3>& column, std::int32_t row, const Vec3& value) {
   column.push_back(value);
 }
 
+/// With translation across a plane and rotation about axes in it fixed.
+model::FixedComponents held_in_plane(model::FixedComponents fixed, int normal) {
+  fixed.fix(normal);
+  for (int k = 0; k < 3; ++k)
+    if (k != normal) fixed.fix(3 + k);
+  return fixed;
+}
+
 }  // namespace
 
 void BallList::add(const Vec3& position, double radius, const BallKind& kind, std::int32_t line) {
   model::Bodies& bodies = draft_.scene.bodies;
   if (bodies.position.size() == std::numeric_limits<std::int32_t>::max()) return report_too_many(line);
-  const double mass = model::sphere_mass(radius, density(kind.material));
-  const double inertia = model::sphere_inertia(radius, mass);
+  const bool disk = draft_.planar && draft_.planar->disks;
+  const double mass = disk ? model::disk_mass(radius, density(kind.material))
+                           : model::sphere_mass(radius, density(kind.material));
+  const double inertia = disk ? model::disk_inertia(radius, mass) : model::sphere_inertia(radius, mass);
   if (!std::isnormal(inertia) && density(kind.material) > 0) report_size(radius, mass, line);
   add_row(bodies.velocity, bodies.size(), kind.velocity);
   add_row(bodies.spin, bodies.size(), kind.spin);
@@ -32,7 +42,7 @@ void BallList::add(const Vec3& position, double radius, const BallKind& kind, st
   bodies.mass.push_back(mass);
   bodies.inertia.push_back(inertia);
   bodies.material.push_back(kind.material);
-  bodies.fixed.push_back(kind.fixed);
+  bodies.fixed.push_back(draft_.planar ? held_in_plane(kind.fixed, draft_.planar->normal) : kind.fixed);
   draft_.ball_places.file.push_back(static_cast<std::int32_t>(draft_.ball_places.files.size()) - 1);
   draft_.ball_places.line.push_back(line);
 }

@@ -16,12 +16,13 @@ struct Swept {
   Vec3 centre;
 };
 
-/// Centres a hair below the upper end of the cell, moved to its lower end: what is near through the cell
-/// is then near.
+/// Centres in the cell, those a hair below the upper end moved to its lower end: what is near through the
+/// cell is then near.
 Vec3 folded(const Vec3& x, const model::PeriodicCell& cell, double margin) {
-  Vec3 result = x;
+  Vec3 result = cell.wrapped(x);
   for (int k = 0; k < 3; ++k)
-    if (cell.periodic[k] && x[k] > cell.origin[k] + cell.lengths[k] - margin) result[k] -= cell.lengths[k];
+    if (cell.periodic[k] && result[k] > cell.origin[k] + cell.lengths[k] - margin)
+      result[k] -= cell.lengths[k];
   return result;
 }
 

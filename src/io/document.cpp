@@ -157,6 +157,11 @@ Node* Node::find(std::string_view name) {
   return kind == Kind::map ? find_child(children, name) : nullptr;
 }
 
+void clear_lines(Node& node) {
+  node.line = 0;
+  for (Node& child : node.children) clear_lines(child);
+}
+
 std::string_view kind_name(Node::Kind kind) {
   switch (kind) {
     case Node::Kind::null:

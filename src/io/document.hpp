@@ -37,6 +37,9 @@ struct Document {
 /// reported; what can be read is returned. `file` outlives the result.
 Node parse_yaml(std::string_view text, const std::string& file, Diagnostics& diagnostics);
 
+/// For what was read of the command line, where lines mean nothing.
+void clear_lines(Node& node);
+
 /// "a list", "a section", "a single value", "nothing".
 std::string_view kind_name(Node::Kind kind);
 

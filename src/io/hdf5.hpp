@@ -102,6 +102,12 @@ struct Row<Vec3> {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
 };
 template <>
+struct Row<Quat> {
+  static constexpr Number number = Number::f64;
+  static constexpr int components = 4;
+  static_assert(sizeof(Quat) == 4 * sizeof(double));
+};
+template <>
 struct Row<model::Image> {
   static constexpr Number number = Number::i8;
   static constexpr int components = 3;

@@ -38,6 +38,38 @@ void add_vector(std::vector<std::string>& names, const std::string& prefix, std:
   for (const char axis : axes) names.push_back(fmt::format("{}{} [{}]", prefix, axis, unit));
 }
 
+/// Components of a symmetric tensor in the order of its columns.
+struct Component {
+  const char* name;
+  int row;
+  int column;
+};
+constexpr std::array<Component, 6> components{
+    {{"xx", 0, 0}, {"yy", 1, 1}, {"zz", 2, 2}, {"xy", 0, 1}, {"xz", 0, 2}, {"yz", 1, 2}}};
+
+void add_tensor(std::vector<std::string>& names, const std::string& prefix, std::string_view unit) {
+  for (const Component& c : components)
+    names.push_back(fmt::format("{} {}{}", prefix, c.name, unit.empty() ? "" : fmt::format(" [{}]", unit)));
+}
+
+void add_region(std::vector<std::string>& names, const std::string& region) {
+  for (const char* what : {"porosity", "coordination", "coordination without rattlers", "sliding"})
+    names.push_back(fmt::format("{} {}", region, what));
+  add_tensor(names, region + " stress", "Pa");
+  add_tensor(names, region + " strain rate", "1/s");
+  add_tensor(names, region + " fabric", "");
+}
+
+/// "gravity_work" -> "gravity work [J]"; what `energies` has too, of another moment, is told apart.
+void add_ledger(std::vector<std::string>& names) {
+  for (const auto& [name, value] : measures::entries_of({})) {
+    const bool has_double = name == "kinetic" || name == "gravitational";
+    std::string text = (has_double ? "ledger " : "") + name + " [J]";
+    std::replace(text.begin(), text.end(), '_', ' ');
+    names.push_back(std::move(text));
+  }
+}
+
 std::vector<std::string> column_names(const model::History& history, std::span<const std::string> walls) {
   std::vector<std::string> names{"step", "time [s]"};
   if (history.energies)
@@ -50,6 +82,8 @@ std::vector<std::string> column_names(const model::History& history, std::span<c
     for (const std::string& wall : walls) add_vector(names, wall + " moment ", "N m");
   if (history.wall_positions)
     for (const std::string& wall : walls) add_vector(names, wall + " centre ", "m");
+  if (history.ledger) add_ledger(names);
+  for (const model::Region& region : history.measures) add_region(names, region.name);
   for (const std::int64_t ball : history.balls) {
     const std::string prefix = fmt::format("ball {} ", ball);
     add_vector(names, prefix, "m");
@@ -66,6 +100,23 @@ void put(std::string& line, double value) {
 
 void put(std::string& line, const Vec3& value) {
   for (int k = 0; k < 3; ++k) put(line, value[k]);
+}
+
+/// The symmetric part.
+void put(std::string& line, const Mat3& value) {
+  for (const Component& c : components) put(line, 0.5 * (value(c.row, c.column) + value(c.column, c.row)));
+}
+
+void put(std::string& line, const measures::Ledger& ledger) {
+  for (const measures::LedgerEntry& entry : measures::entries_of(ledger)) put(line, entry.value);
+}
+
+void put(std::string& line, const measures::Measure& m) {
+  for (const double value : {m.porosity, m.fabric.coordination, m.fabric.without_rattlers, m.fabric.sliding})
+    put(line, value);
+  put(line, m.stress);
+  put(line, m.strain_rate().value_or(Mat3::Constant(measures::nothing)));
+  put(line, m.fabric.tensor);
 }
 
 /// The step that a line begins with.
@@ -180,6 +231,9 @@ std::string HistoryFile::line(const assembly::State& state, const HistoryValues&
   if (history_.walls) put_walls(values.wall_forces);
   if (history_.wall_moments) put_walls(values.wall_moments);
   if (history_.wall_positions) put_walls(values.wall_positions);
+  if (history_.ledger) put(text, values.ledger);
+  EIGENGRAIN_ASSERT(values.regions.size() == history_.measures.size(), values.regions.size());
+  for (const measures::Measure& measure : values.regions) put(text, measure);
   const model::Bodies& bodies = state.model.bodies;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const std::size_t row = rows_[k] = row_of(history_.balls[k], rows_[k], bodies);

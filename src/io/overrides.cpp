@@ -45,12 +45,6 @@ Parsed<Node*> descend(Node& node, const std::string& part, const std::string& fi
   return {.value = &node.children.back()};
 }
 
-/// Lines within the text of an override mean nothing.
-void clear_lines(Node& node) {
-  node.line = 0;
-  for (Node& child : node.children) clear_lines(child);
-}
-
 void apply(const std::string& text, const std::string& file, Node& root, Diagnostics& diagnostics) {
   const std::size_t equals = text.find('=');
   const std::vector<std::string> parts = split_path(std::string_view(text).substr(0, equals));

@@ -1,5 +1,6 @@
 #include "ball_list.hpp"
 #include "packing_reader.hpp"
+#include "read_fixed.hpp"
 #include "read_generated.hpp"
 #include "scene_draft.hpp"
 
@@ -13,17 +14,6 @@
 
 namespace eigengrain::io {
 namespace {
-
-model::FixedComponents read_fixed(const Section& section) {
-  static constexpr std::array<std::string_view, 6> components{"x", "y", "z", "wx", "wy", "wz"};
-  model::FixedComponents fixed;
-  for (const std::string& word : section.texts("fix").value_or(std::vector<std::string>())) {
-    if (word == "all") return model::FixedComponents(63);
-    for (int k = 0; k < 6; ++k)
-      if (components[k] == word) fixed.fix(k);
-  }
-  return fixed;
-}
 
 /// A sort of entry: the key that makes it one, and the keys that it takes beside those of all entries.
 struct EntrySort {
@@ -112,6 +102,17 @@ void read_entry(const Section& section, SceneDraft& draft, BallList& balls) {
 }
 
 }  // namespace
+
+model::FixedComponents read_fixed(const Section& section) {
+  static constexpr std::array<std::string_view, 6> components{"x", "y", "z", "wx", "wy", "wz"};
+  model::FixedComponents fixed;
+  for (const std::string& word : section.texts("fix").value_or(std::vector<std::string>())) {
+    if (word == "all") return model::FixedComponents(63);
+    for (int k = 0; k < 6; ++k)
+      if (components[k] == word) fixed.fix(k);
+  }
+  return fixed;
+}
 
 Place BallPlaces::of(std::int32_t ball) const {
   const auto b = static_cast<std::size_t>(ball);

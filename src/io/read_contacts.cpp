@@ -1,3 +1,4 @@
+#include "eigengrain/contact/bonds.hpp"
 #include "eigengrain/contact/law_table.hpp"
 #include "eigengrain/io/suggest.hpp"
 
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace eigengrain::io {
 namespace {
@@ -77,6 +79,40 @@ void read_law(const Section& any_law, const model::Scene& scene, ContactRule& ru
   if (const std::string mistake = law->mistake(rule.parameters); !mistake.empty()) section.report(mistake);
 }
 
+/// A bond that is a part of the law fits the linear law only, and not the springs that never open.
+void check_contact_bond(const Section& contact, const ContactRule& rule) {
+  if (rule.bond->kind != contact::ContactBond::name || rule.law.empty()) return;
+  if (rule.law != contact::Linear::name)
+    contact.report("bond",
+                   fmt::format("a {} bond is one of the law {}, not of {}; write \"law: {}\", or \"kind: "
+                               "parallel\"",
+                               rule.bond->kind, contact::Linear::name, rule.law, contact::Linear::name));
+  else if (contact::LinearSprings::params(rule.parameters).tension)
+    contact.report("tension",
+                   "springs with tension never open, so a contact bond means nothing there; leave "
+                   "out one of the two");
+  else if (!contact::DampedLinear::serves(rule.parameters))
+    contact.report("bond",
+                   "a contact bond carries no moment, so it knows no rolling resistance; leave out `kr` and "
+                   "`rolling_friction`, or write \"kind: parallel\"");
+}
+
+void read_bond(const Section& contact, ContactRule& rule) {
+  if (!contact.has("bond")) return;
+  const auto any_kind = contact.section("bond");
+  if (!any_kind) return;
+  const auto kind = any_kind->text("kind");
+  if (!kind) return any_kind->check_keys();
+  const Section section = any_kind->with_law(*kind);
+  section.check_keys();
+  model::BondRule bond{.kind = *kind, .parameters = {}, .gap = section.quantity("gap").value_or(0)};
+  for (const contact::ParameterDescription& parameter : contact::find_bond(*kind)->parameters)
+    bond.parameters.push_back(
+        read_parameter(section, parameter).value_or(parameter.default_value.value_or(0)));
+  rule.bond = std::move(bond);
+  check_contact_bond(contact, rule);
+}
+
 /// Whether the rule matches every pair that the other one does ("any" is matched by "any" only).
 bool covers(const ContactRule& rule, const ContactRule& other) {
   return rule.matches(other.first, other.second);
@@ -96,6 +132,7 @@ void read_contacts(const Section& root, SceneDraft& draft) {
     const bool known_pair = read_between(section, draft.scene, rule);
     draft.contacts_complete = draft.contacts_complete && known_pair;
     read_law(section, draft.scene, rule);
+    read_bond(section, rule);
     if (!known_pair) continue;
     // A pair whose law has mistakes still counts as one that has a law: one report is enough.
     const auto earlier =
@@ -110,6 +147,10 @@ void read_contacts(const Section& root, SceneDraft& draft) {
     draft.contact_places.push_back(section.place());
     paths.push_back(fmt::format("{} (line {})", section.path(), section.place().line));
   }
+  draft.scene.full_levers = root.text("levers") == "surface";
+  if (draft.scene.full_levers &&
+      std::any_of(rules.begin(), rules.end(), [](const ContactRule& rule) { return rule.bond.has_value(); }))
+    root.report("levers", "surface beside bonds, which hold at the contact point; leave the key out");
 }
 
 }  // namespace eigengrain::io

@@ -1,6 +1,9 @@
+#include "eigengrain/io/suggest.hpp"
+
 #include "scene_draft.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
@@ -36,12 +39,39 @@ void check_balls(const Section& section, const std::vector<std::int64_t>& balls,
   }
 }
 
+/// The regions that a table names.
+std::vector<model::Region> chosen_regions(const Section& section, const std::vector<std::string>& wanted,
+                                          const SceneDraft& draft) {
+  std::vector<model::Region> chosen;
+  std::vector<std::string> names;
+  for (const model::Region& region : draft.scene.measures) names.push_back(region.name);
+  for (const std::string& name : wanted) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    const auto same = [&](const model::Region& region) { return region.name == name; };
+    if (std::any_of(chosen.begin(), chosen.end(), same))
+      section.report("measures", fmt::format("\"{}\" stands there twice; name it once", name));
+    else if (found != names.end())
+      chosen.push_back(draft.scene.measures[static_cast<std::size_t>(found - names.begin())]);
+    else if (draft.measures_complete)
+      section.report(
+          "measures",
+          names.empty()
+              ? fmt::format("there is no region \"{0}\"; add it, e.g. \"measures: [{{name: {0}}}]\" "
+                            "for all that there is",
+                            name)
+              : fmt::format("there is no region \"{}\"{} (measures: {})", name, did_you_mean(name, names),
+                            fmt::join(names, ", ")));
+  }
+  return chosen;
+}
+
 /// The columns of a table; false if something is wrong with them, which has been reported.
 bool read_columns(const Section& section, const SceneDraft& draft, model::History& history) {
   const auto of = section.texts("of");
   const auto balls = section.integers("balls");
-  if (!of || !balls) return false;
-  if (of->empty() && balls->empty()) {
+  const auto regions = section.texts("measures");
+  if (!of || !balls || !regions) return false;
+  if (of->empty() && balls->empty() && regions->empty()) {
     section.report(
         "no columns; add e.g. \"of: [energies, unbalanced, walls]\", or the numbers of balls, \"balls: "
         "[0]\"");
@@ -55,10 +85,17 @@ bool read_columns(const Section& section, const SceneDraft& draft, model::Histor
   history.walls = wanted("walls");
   history.wall_moments = wanted("wall_moments");
   history.wall_positions = wanted("wall_positions");
+  history.ledger = wanted("ledger");
   history.balls = *balls;
+  history.measures = chosen_regions(section, *regions, draft);
   const bool of_walls = history.walls || history.wall_moments || history.wall_positions;
   if (of_walls && draft.scene.walls.empty() && draft.scene.surfaces.empty() && draft.walls_complete)
     section.report("of", "walls, and the scene has none; remove the word, or add walls");
+  if (history.ledger && !draft.scene.bodies.clumps.empty())
+    section.report(
+        "of",
+        "ledger, which does not count the work on clumps; take `energies`, which has their kinetic "
+        "energy");
   check_balls(section, *balls, draft);
   return true;
 }
@@ -97,6 +134,10 @@ void read_outputs(const Section& root, SceneDraft& draft) {
   draft.scene.outputs.checkpoint_every =
       section->integer("checkpoint").value_or(draft.scene.outputs.checkpoint_every);
   draft.scene.outputs.series_every = section->integer("series").value_or(0);
+  const auto fields = section->texts("fields").value_or(std::vector<std::string>{});
+  draft.scene.outputs.series_stress = std::find(fields.begin(), fields.end(), "stress") != fields.end();
+  if (!fields.empty() && !section->has("series"))
+    section->report("fields", "of frames that nothing writes; add e.g. \"series: 1000\", or remove fields");
 }
 
 }  // namespace eigengrain::io

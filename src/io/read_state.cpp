@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <system_error>
 #include <utility>
 
@@ -37,11 +38,11 @@ void check_format(const h5::File& hdf5, const fs::path& file) {
                     hdf5.has_attribute(layout::root, "schema");
   if (!ours) refuse(file, "an HDF5 file, but no state of Eigengrain; states are what a run writes");
   const std::int64_t schema = hdf5.integer(layout::root, "schema");
-  if (schema == layout::schema) return;
-  refuse(file, fmt::format("{}: its schema is {}, and this program reads {}; read it with the program that "
-                           "wrote it",
+  if (schema >= layout::oldest_schema && schema <= layout::schema) return;
+  refuse(file, fmt::format("{}: its schema is {}, and this program reads {} to {}; read it with the program "
+                           "that wrote it",
                            schema > layout::schema ? "written by a newer version" : "no schema that exists",
-                           schema, layout::schema));
+                           schema, layout::oldest_schema, layout::schema));
 }
 
 void check_is_file(const fs::path& file) {
@@ -76,14 +77,56 @@ void read_bodies(const h5::File& hdf5, assembly::State& state) {
   });
   model::Bodies& bodies = state.model.bodies;
   if (hdf5.has(layout::spin)) bodies.spin = hdf5.read<Vec3>(layout::spin, count);
+  if (hdf5.has(layout::orientation)) bodies.orientation = hdf5.read<Quat>(layout::orientation, count);
   if (hdf5.has(layout::moment)) state.moment = hdf5.read<Vec3>(layout::moment, count);
   for (std::size_t i = 0; i < count; ++i) {
     if (!finite(bodies.position[i]))
       throw h5::Error(fmt::format("the position of ball {} is not finite", bodies.identity[i]));
+    // Written so that not-a-number fails too. Rounding leaves some ulps.
+    if (!bodies.orientation.empty() && !(std::abs(bodies.orientation[i].squaredNorm() - 1) < 1e-12))
+      throw h5::Error(fmt::format("the orientation of ball {} is no unit quaternion", bodies.identity[i]));
     if (!(bodies.radius[i] > 0) || !std::isfinite(bodies.radius[i]))
       throw h5::Error(
           fmt::format("the radius of ball {} is {} m, not positive", bodies.identity[i], bodies.radius[i]));
   }
+}
+
+/// Whether every ball is a piece of one clump at most, and every clump has balls.
+bool members_are_sound(const model::Clumps& clumps, std::int32_t balls) {
+  if (clumps.starts.front() != 0 || clumps.starts.back() != static_cast<std::int32_t>(clumps.member.size()) ||
+      std::adjacent_find(clumps.starts.begin(), clumps.starts.end(), std::greater_equal<>()) !=
+          clumps.starts.end())
+    return false;
+  std::vector<char> seen(static_cast<std::size_t>(balls), 0);
+  return std::all_of(clumps.member.begin(), clumps.member.end(), [&](std::int32_t row) {
+    return row >= 0 && row < balls && std::exchange(seen[static_cast<std::size_t>(row)], 1) == 0;
+  });
+}
+
+void read_clumps(const h5::File& hdf5, assembly::State& state) {
+  if (!hdf5.has(layout::clumps)) return;
+  model::Bodies& bodies = state.model.bodies;
+  model::Clumps& clumps = bodies.clumps;
+  const std::size_t count = hdf5.rows("/clumps/identity");
+  layout::for_each_clump_column(clumps, [&](const std::string& path, auto& column) {
+    const bool of_balls = path == "/clumps/member" || path == "/clumps/place";
+    const std::size_t rows = of_balls                   ? hdf5.rows("/clumps/member")
+                             : path == "/clumps/starts" ? count + 1
+                                                        : count;
+    column = hdf5.read<typename std::decay_t<decltype(column)>::value_type>(path, rows);
+  });
+  if (!members_are_sound(clumps, bodies.size())) throw h5::Error("the balls of the clumps make no sense");
+  if (bodies.spin.empty() || state.moment.empty())
+    throw h5::Error("clumps, but balls without spin or moment");
+  for (std::size_t c = 0; c < count; ++c) {
+    if (!finite(clumps.position[c]) || !(std::abs(clumps.orientation[c].squaredNorm() - 1) < 1e-12))
+      throw h5::Error(fmt::format("clump {} has no place or no unit quaternion", c));
+    if (!(clumps.mass[c] > 0) || !(clumps.inertia[c].minCoeff() > 0))
+      throw h5::Error(fmt::format("mass or inertia of clump {} is not positive", c));
+  }
+  clumps.of_row.assign(bodies.position.size(), model::Clumps::none);
+  for (std::int32_t c = 0; c < clumps.size(); ++c)
+    for (const std::int32_t row : clumps.members(c)) clumps.of_row[static_cast<std::size_t>(row)] = c;
 }
 
 void read_list(const h5::File& hdf5, assembly::State& state) {
@@ -124,11 +167,19 @@ void read_walls(const h5::File& hdf5, const fs::path& file, assembly::State& sta
                                index[k] + 1));
     const double* q = &orientation[4 * k];
     model.wall_poses[static_cast<std::size_t>(found - model.wall_motions.begin())] = {
-        centre[k], Eigen::Quaterniond(q[0], q[1], q[2], q[3])};
+        centre[k], Eigen::Quaterniond(q[3], q[0], q[1], q[2])};
   }
   state.list.wall_way = hdf5.number(layout::list, "wall_way");
   state.list.wall_lever = hdf5.read<double>(layout::list_wall_lever, hdf5.rows(layout::list_wall_lever));
   assembly::place_walls(state);
+}
+
+/// An integral that the file does not know yet began at zero when its program did.
+void read_ledger(const h5::File& hdf5, assembly::State& state) {
+  if (!hdf5.has(layout::ledger)) return;
+  layout::for_each_energy(state.ledger.emplace(), [&](const std::string& name, double& energy) {
+    if (hdf5.has_attribute(layout::ledger, name.c_str())) energy = hdf5.number(layout::ledger, name.c_str());
+  });
 }
 
 /// Overrides may not pull away what the stored numbers rest upon.
@@ -142,6 +193,17 @@ void refuse_changes(const model::Scene& stored, const model::Scene& now, const f
       refuse(file, fmt::format("materials[{}].density: {} kg/m3; the balls of a state have their masses from "
                                "{} kg/m3 and keep them; leave it out, or start from the scene",
                                k, now.materials[k].density, stored.materials[k].density));
+  for (std::size_t r = 0; r < std::min(now.contacts.size(), stored.contacts.size()); ++r) {
+    const auto kind = [&](const model::Scene& scene) {
+      const auto& bond = scene.contacts[r].bond;
+      return bond ? bond->kind : std::string("none");
+    };
+    if (kind(now) != kind(stored))
+      refuse(file,
+             fmt::format("contacts[{}].bond: {}; the bonds of a state are those it was started with ({}); "
+                         "keep the kind, or start from the scene",
+                         now.contacts[r].entry, kind(now), kind(stored)));
+  }
   if (now.walls.size() != stored.walls.size())
     refuse(file, fmt::format("walls: {} planes; the state has {}, and its contacts name them by number; keep "
                              "their number and their order",
@@ -207,7 +269,9 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
       value = hdf5.number(layout::root, name);
   });
   read_bodies(hdf5, state);
+  read_clumps(hdf5, state);
   read_list(hdf5, state);
+  read_ledger(hdf5, state);
   const std::string document = hdf5.read_text(layout::settings);
   const model::Scene stored = read_settings(document, file, {}, state.model.bodies);
   state.settings = read_settings(document, file, overrides, state.model.bodies);

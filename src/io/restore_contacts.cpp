@@ -1,7 +1,10 @@
 #include "restore_contacts.hpp"
 
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/base/error.hpp"
+#include "eigengrain/contact/bonds.hpp"
+#include "eigengrain/contact/law_table.hpp"
 
 #include "state_layout.hpp"
 
@@ -44,13 +47,17 @@ class GroupReader {
                       "that are in use",
                       rule, rules));
     const model::ContactRule& now = settings_.contacts[static_cast<std::size_t>(rule)];
-    if (now.law != law)
+    const bool bonds = contact::find_bond(law) != nullptr;
+    if (!bonds && now.law != law)
       refuse(
           fmt::format("contacts[{}]: law {}; the state has contacts with the law {} there, whose history "
                       "another law cannot continue",
                       rule, now.law, law));
-    contact::AnyGroup group =
-        assembly::new_group(file_.text(path_, "kinematics"), now, static_cast<std::int32_t>(rule));
+    if (bonds && (!now.bond || now.bond->kind != law))
+      damaged(fmt::format("{} bonds of contacts[{}], whose settings have none", law, rule));
+    const auto index = static_cast<std::int32_t>(rule);
+    contact::AnyGroup group = bonds ? assembly::new_bond_group(now, index)
+                                    : assembly::new_group(file_.text(path_, "kinematics"), now, index);
     std::visit([&](auto& concrete) { fill(concrete); }, group);
     return group;
   }
@@ -70,8 +77,18 @@ class GroupReader {
     }
     check_pairs<typename Group::KinematicsType>(group.pairs);
     check_rules<typename Group::KinematicsType>(group);
+    using Law = typename Group::LawType;
+    const std::string stored = file_.text(path_, "state_fields");
+    if constexpr (contact::in_total_form<Law>)
+      if (model_.bodies.orientation.empty()) damaged("bonds, but balls without orientation");
+    if constexpr (contact::BondLaw<Law>)
+      if (Law::additive && stored != layout::state_fields<Law>())
+        refuse(fmt::format(
+            "contacts[{}].bond: another form than that of the bonds of the state; keep `incremental` "
+            "as it was",
+            settings_.contacts[static_cast<std::size_t>(group.rule)].entry));
     form_states(group);
-    read_states(group);
+    read_states(group, words_of(stored));
   }
 
   std::vector<Pair> read_pairs() const {
@@ -140,12 +157,11 @@ class GroupReader {
     }
   }
 
-  /// The parts of the history that the file has; a part of the law that has come on since, such as a dashpot,
-  /// keeps what it starts with.
+  /// The parts of the history that the file has (`stored`, by name); a part of the law that has come on
+  /// since, such as a dashpot, keeps what it starts with.
   template <class Group>
-  void read_states(Group& group) const {
+  void read_states(Group& group, const std::vector<std::string>& stored) const {
     if constexpr (!std::is_empty_v<typename Group::State>) {
-      const std::vector<std::string> stored = words_of(file_.text(path_, "state_fields"));
       std::size_t offset = 0;
       for (const contact::StateField& field : Group::LawType::state_fields) {
         const auto components = static_cast<std::size_t>(field.components);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -24,11 +25,18 @@ struct BallPlaces {
   Place of(std::int32_t ball) const;
 };
 
+/// A scene whose bodies stay in one plane.
+struct Plane2d {
+  int normal = 2;      ///< axis across the plane
+  bool disks = false;  ///< of unit thickness; else spheres
+};
+
 /// A scene while it is read, with the places that later checks name. A material of -1 stands for a name that
 /// is unknown and has been reported.
 struct SceneDraft {
   model::Scene scene;
   std::filesystem::path folder;  ///< that paths are relative to
+  std::optional<Plane2d> planar;
   BallPlaces ball_places;
   std::vector<Place> material_places;
   std::vector<Place> contact_places;  ///< of the entries behind the rules
@@ -36,19 +44,25 @@ struct SceneDraft {
   bool contacts_complete = true;  ///< no entry was left out because of a mistake
   bool balls_complete = true;     ///< neither was a ball
   bool walls_complete = true;     ///< nor a wall
+  bool measures_complete = true;  ///< nor a region
 };
 
 /// One function for each section of the scene; each reads its own keys only. Those that use the materials
-/// come after read_materials, read_balls and read_walls after read_periodic, read_histories after both.
+/// come after read_materials, read_balls and read_walls after read_periodic and read_planar, read_histories
+/// after both and after read_measures.
 void read_materials(const Section& root, SceneDraft& draft);
 void read_periodic(const Section& root, SceneDraft& draft);
+void read_planar(const Section& root, SceneDraft& draft);
 void read_contacts(const Section& root, SceneDraft& draft);
 void read_balls(const Section& root, SceneDraft& draft);
+/// After read_balls.
+void read_clumps(const Section& root, SceneDraft& draft);
 void read_walls(const Section& root, SceneDraft& draft);
 void read_gravity(const Section& root, SceneDraft& draft);
 void read_damping(const Section& root, SceneDraft& draft);
 void read_timestep(const Section& root, SceneDraft& draft);
 void read_run(const Section& root, SceneDraft& draft);
+void read_measures(const Section& root, SceneDraft& draft);
 void read_histories(const Section& root, SceneDraft& draft);
 void read_outputs(const Section& root, SceneDraft& draft);
 
@@ -71,6 +85,9 @@ void check_scene(const Section& root, const SceneDraft& draft);
 
 /// Where balls may start: not behind walls, no two at one place. Later they may be wherever forces put them.
 void check_placement(const Section& root, const SceneDraft& draft);
+
+/// Whether a planar scene is one: balls in one plane, nothing that drives them out of it.
+void check_planar(const Section& root, const SceneDraft& draft);
 
 /// Adds to the scene's notes what is odd, though it is no mistake: walls that coincide.
 void add_notes(SceneDraft& draft);

@@ -10,11 +10,14 @@ namespace eigengrain::io {
 
 inline constexpr Range positive_range{.low = 0, .low_allowed = false};
 
-/// Gravity, materials and the laws between them, but the parameters of the laws.
+/// Gravity, materials and the laws between them, but the parameters of the laws and bonds.
 std::vector<KeyDescription> contact_keys();
 
 /// Balls, from files, one by one or made.
 std::vector<KeyDescription> ball_keys();
+
+/// Rigid bodies of several balls.
+std::vector<KeyDescription> clump_keys();
 
 /// Walls and the periodic cell.
 std::vector<KeyDescription> wall_keys();

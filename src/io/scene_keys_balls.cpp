@@ -19,6 +19,25 @@ std::vector<std::string> lattice_names() {
 
 std::vector<KeyDescription> ball_keys() {
   return {
+      {.path = "planar",
+       .kind = section,
+       .example = "{shape: disk, normal: z}",
+       .description =
+           "a scene in a plane: bodies keep their place across it and turn about its normal alone, "
+           "so each has three unknowns"},
+      {.path = "planar.shape",
+       .kind = word,
+       .fallback = "sphere",
+       .words = {"sphere", "disk"},
+       .example = "disk",
+       .description = "what balls are, for their masses: spheres, or disks of unit thickness (1 m)"},
+      {.path = "planar.normal",
+       .kind = word,
+       .fallback = "z",
+       .words = {"x", "y", "z"},
+       .example = "y",
+       .description = "the axis across the plane"},
+
       {.path = "balls",
        .kind = section_list,
        .required = true,

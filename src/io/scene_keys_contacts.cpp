@@ -61,6 +61,15 @@ std::vector<KeyDescription> contact_keys() {
            "does not give in a contact: only the other side does; stands for `young`, `poisson`, `kn` "
            "and `ks`"},
 
+      {.path = "levers",
+       .kind = word,
+       .fallback = "contact_point",
+       .words = {"contact_point", "surface"},
+       .example = "surface",
+       .description =
+           "where the levers of balls end: at the contact point, R - U/2 from the centre; or at the "
+           "ball's surface, R, as in LAMMPS and LIGGGHTS, where the moments of a contact do not balance"},
+
       {.path = "contacts",
        .kind = section_list,
        .example = "[{between: [any, any], law: linear, kn: 1e5 N/m}]",
@@ -77,6 +86,25 @@ std::vector<KeyDescription> contact_keys() {
        .words = law_names(),
        .example = "linear",
        .description = "the contact law, see below; `none`: the two do not see each other"},
+
+      {.path = "contacts[].bond",
+       .kind = section,
+       .example = "{kind: parallel, kn: 1e12 Pa/m, tension: 5 MPa, gap: 10 um}",
+       .description = "bonds between the balls of these pairs, made when the scene starts; absent: none"},
+      {.path = "contacts[].bond.kind",
+       .kind = word,
+       .required = true,
+       .words = bond_names(),
+       .example = "parallel",
+       .description = "the kind of bond, see below"},
+      {.path = "contacts[].bond.gap",
+       .kind = quantity,
+       .unit = "m",
+       .range = {.low = 0},
+       .fallback = "0",
+       .example = "10 um",
+       .description = "pairs of balls whose surfaces are no more than this apart are bonded; rounding of "
+                      "positions may set balls that should touch a little apart"},
   };
 }
 

@@ -24,12 +24,14 @@ void read_sections(const Section& root, SceneDraft& draft, const TakeBalls& take
   read_gravity(root, draft);
   read_materials(root, draft);
   read_periodic(root, draft);
+  read_planar(root, draft);
   read_contacts(root, draft);
   take_balls(root, draft);
   read_walls(root, draft);
   read_damping(root, draft);
   read_timestep(root, draft);
   read_run(root, draft);
+  read_measures(root, draft);
   read_histories(root, draft);
   read_outputs(root, draft);
 }
@@ -52,6 +54,8 @@ Document read_document(std::string_view yaml, std::string_view name, std::span<c
 }
 
 constexpr std::string_view balls_key = "balls";
+constexpr std::string_view planar_key = "planar";
+constexpr std::string_view clumps_key = "clumps";
 
 void make_absolute(Node* path, const std::filesystem::path& folder) {
   if (path != nullptr && path->kind == Node::Kind::scalar && !path->text.empty())
@@ -63,7 +67,7 @@ void make_absolute(Node* path, const std::filesystem::path& folder) {
 std::string document_for_states(const Document& document, const std::filesystem::path& folder) {
   Node root;
   for (const Node& section : document.root.children)
-    if (section.key != balls_key) root.children.push_back(section);
+    if (section.key != balls_key && section.key != clumps_key) root.children.push_back(section);
   for (Node& section : root.children) {
     if (section.key != "walls") continue;
     for (Node& wall : section.children)
@@ -78,8 +82,10 @@ std::string document_for_states(const Document& document, const std::filesystem:
 /// Of balls that exist, what the checks of the rest ask for: their materials.
 void take_materials_of_balls(const Section& root, SceneDraft& draft,
                              std::span<const std::int32_t> material_of_ball) {
-  if (root.has(balls_key))
-    root.report(balls_key, "a state has its balls already; leave the key out, or start from the scene");
+  for (const std::string_view key : {balls_key, clumps_key})
+    if (root.has(key))
+      root.report(key,
+                  fmt::format("a state has its {} already; leave the key out, or start from the scene", key));
   const auto count = static_cast<std::int32_t>(draft.scene.materials.size());
   const bool known = std::all_of(material_of_ball.begin(), material_of_ball.end(),
                                  [&](std::int32_t material) { return material >= 0 && material < count; });
@@ -103,9 +109,13 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   draft.folder = folder;
   draft.scene.document = document_for_states(document, folder);
   const Section root(document.root, "", "", diagnostics);
-  root.check_keys();
-  read_sections(root, draft, read_balls);
+  root.check_keys(root.has(clumps_key) ? balls_key : std::string_view());
+  read_sections(root, draft, [](const Section& section, SceneDraft& into) {
+    read_balls(section, into);
+    read_clumps(section, into);
+  });
   check_scene(root, draft);
+  check_planar(root, draft);
   take_from_materials(draft, diagnostics);
   check_placement(root, draft);
   diagnostics.throw_if_any();
@@ -124,6 +134,11 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
   draft.scene.document = document_for_states(document, folder);
   const Section root(document.root, "", "", diagnostics);
   root.check_keys(balls_key);
+  for (const std::string& text : overrides)
+    if (text.starts_with(planar_key))
+      root.report(planar_key,
+                  "a state keeps the plane and the masses that it was started with; leave the "
+                  "override out, or start from the scene");
   read_sections(root, draft, [&](const Section& section, SceneDraft& into) {
     take_materials_of_balls(section, into, material_of_ball);
   });

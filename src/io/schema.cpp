@@ -15,9 +15,12 @@ using enum KeyKind;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-KeyDescription law_key(const contact::LawDescription& law, const contact::ParameterDescription& parameter) {
+/// section  that the parameter stands in: of a contact or of its bond
+KeyDescription law_key(std::string_view section, const contact::LawDescription& law,
+                       const contact::ParameterDescription& parameter) {
   const bool is_flag = parameter.kind == contact::ParameterDescription::Kind::flag;
-  KeyDescription key{.path = fmt::format("contacts[].{}", parameter.name), .kind = is_flag ? flag : quantity};
+  KeyDescription key{.path = fmt::format("{}.{}", section, parameter.name),
+                     .kind = is_flag ? flag : quantity};
   key.law = law.name;
   key.unit = parameter.unit;
   key.description = parameter.description;
@@ -29,7 +32,9 @@ KeyDescription law_key(const contact::LawDescription& law, const contact::Parame
     return key;
   }
   key.range = {.low = parameter.minimum, .high = parameter.maximum, .low_allowed = parameter.minimum_allowed};
-  if (parameter.default_value) key.fallback = fmt::format("{}", *parameter.default_value);
+  // A default without bound is that of a key that is left out; no number says it.
+  if (parameter.default_value && *parameter.default_value < infinity)
+    key.fallback = fmt::format("{}", *parameter.default_value);
   const double valid = parameter.minimum > -infinity ? parameter.minimum + 1 : 1;
   key.example = key.unit.empty() ? fmt::format("{}", valid) : fmt::format("{} {}", valid, key.unit);
   return key;
@@ -40,8 +45,11 @@ std::vector<KeyDescription> all_keys() {
   std::vector<KeyDescription> keys = contact_keys();
   for (const contact::LawDescription& law : contact::law_descriptions())
     for (const contact::ParameterDescription& parameter : law.parameters)
-      keys.push_back(law_key(law, parameter));
-  for (const auto& more : {ball_keys(), wall_keys(), run_keys()})
+      keys.push_back(law_key("contacts[]", law, parameter));
+  for (const contact::LawDescription& bond : contact::bond_descriptions())
+    for (const contact::ParameterDescription& parameter : bond.parameters)
+      keys.push_back(law_key("contacts[].bond", bond, parameter));
+  for (const auto& more : {ball_keys(), clump_keys(), wall_keys(), run_keys()})
     keys.insert(keys.end(), more.begin(), more.end());
   return keys;
 }
@@ -74,6 +82,12 @@ std::vector<std::string> law_names() {
   std::vector<std::string> names;
   for (const contact::LawDescription& law : contact::law_descriptions()) names.emplace_back(law.name);
   names.emplace_back("none");
+  return names;
+}
+
+std::vector<std::string> bond_names() {
+  std::vector<std::string> names;
+  for (const contact::LawDescription& bond : contact::bond_descriptions()) names.emplace_back(bond.name);
   return names;
 }
 

@@ -45,7 +45,7 @@ std::string value_text(const KeyDescription& key) {
     case text:
       return "name";
     case texts:
-      return "two names";
+      return "list of names";
     case word:
       return "one of " + joined(key.words);
     case words:
@@ -79,11 +79,13 @@ std::string table_of_laws() {
   return text;
 }
 
-std::string laws_markdown() {
-  std::string text = table_of_laws();
-  for (const contact::LawDescription& law : contact::law_descriptions()) {
-    text += fmt::format("\n### `law: {}`\n\n{}\n\n{}", law.name, law.description, table_head);
-    for (const KeyDescription* key : section_keys("contacts[]", law.name))
+/// word  by which a scene asks for one of them; section: where its parameters stand
+std::string laws_markdown(std::string_view word, const std::vector<contact::LawDescription>& laws,
+                          std::string_view section) {
+  std::string text;
+  for (const contact::LawDescription& law : laws) {
+    text += fmt::format("\n### `{}: {}`\n\n{}\n\n{}", word, law.name, law.description, table_head);
+    for (const KeyDescription* key : section_keys(section, law.name))
       if (!key->law.empty()) text += table_row(*key, key->name());
   }
   return text;
@@ -94,7 +96,7 @@ std::string laws_markdown() {
 std::string schema_markdown() {
   std::string text = R"(# The scene file
 
-Generated from the table in `src/io/schema.cpp` that the reader itself uses; a test keeps the two equal.
+Generated from the tables in `src/io/scene_keys_*.cpp` that the reader itself uses; a test keeps the two equal.
 
 A scene is one YAML document. Paths in it are relative to its folder. A key that stands nowhere below is an
 error, and so are a wrong unit, a number that is not finite and a key given twice; all mistakes are reported
@@ -112,7 +114,13 @@ at once. `--set key=value` on the command line acts as if the file said so: `--s
   text +=
       "\n## Contact laws\n\nThe parameters stand beside `law`, in the same entry of `contacts`; "
       "those in brackets have defaults.\n";
-  text += laws_markdown();
+  text += table_of_laws();
+  text += laws_markdown("law", contact::law_descriptions(), "contacts[]");
+  text +=
+      "\n## Bonds\n\nThe parameters stand beside `kind`, in the section `bond` of an entry of `contacts`. "
+      "Balls "
+      "only are bonded, not walls.\n";
+  text += laws_markdown("kind", contact::bond_descriptions(), "contacts[].bond");
   text += "\n## Units\n\n";
   text +=
       "A plain number is in SI units. A quantity may carry its unit instead: `5 mm`, `48 GPa`, `2.5 g/cm3`,\n"

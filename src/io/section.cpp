@@ -99,7 +99,8 @@ std::string Section::takes() const {
   }
   const std::string names = fmt::format("{}", fmt::join(names_once, ", "));
   if (!law_.empty())
-    return fmt::format("a {} contact takes {}", law_, names.empty() ? "no parameters" : names);
+    return fmt::format("a {} {} takes {}", law_, pattern_.ends_with(".bond") ? "bond" : "contact",
+                       names.empty() ? "no parameters" : names);
   if (pattern_.empty()) return fmt::format("a scene takes {}", names);
   return fmt::format("{} takes {}", pattern_, names);
 }

@@ -59,8 +59,8 @@ void take(std::string_view& text, std::string_view expected) {
 
 }  // namespace
 
-Series::Series(std::filesystem::path folder, std::string stem, Of what)
-    : folder_(std::move(folder)), stem_(std::move(stem)), what_(what) {}
+Series::Series(std::filesystem::path folder, std::string stem, Of what, bool stress)
+    : folder_(std::move(folder)), stem_(std::move(stem)), what_(what), stress_(stress) {}
 
 std::vector<std::int64_t> Series::steps() const {
   std::vector<std::int64_t> steps;
@@ -91,7 +91,7 @@ void Series::add(const assembly::State& state) {
   const std::filesystem::path file = frame_file(state.step);
   make_folder(file.parent_path());
   if (what_ == Of::balls)
-    write_frame(file, state);
+    write_frame(file, state, stress_);
   else
     write_surface_frame(file, state.model);
   frames_.push_back({state.step, state.time});

@@ -2,12 +2,14 @@
 
 #include "eigengrain/assembly/acting.hpp"
 #include "eigengrain/base/assert.hpp"
+#include "eigengrain/measures/measure.hpp"
 
 #include "atomic_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <concepts>
 #include <cstdint>
@@ -32,6 +34,16 @@ constexpr std::string_view type_name<std::int32_t> = "Int32";
 template <>
 constexpr std::string_view type_name<std::uint8_t> = "UInt8";
 
+/// A tensor row by row, as VTK has it.
+using Tensor = std::array<double, 9>;
+
+template <class T>
+constexpr std::string_view components = "";
+template <>
+constexpr std::string_view components<Vec3> = R"( NumberOfComponents="3")";
+template <>
+constexpr std::string_view components<Tensor> = R"( NumberOfComponents="9")";
+
 template <class T>
 std::string_view bytes_of(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
@@ -46,10 +58,9 @@ class AppendedArrays {
   std::string add(std::string_view name, std::size_t count, Make make, std::string_view more = {}) {
     using Value = typename std::invoke_result_t<Make>::value_type;
     const std::uint64_t size = count * sizeof(Value);
-    const std::string components = std::is_same_v<Value, Vec3> ? R"( NumberOfComponents="3")" : "";
     std::string element =
         fmt::format("<DataArray type=\"{}\" Name=\"{}\"{}{} format=\"appended\" offset=\"{}\"/>\n",
-                    type_name<Value>, name, components, more, offset_);
+                    type_name<Value>, name, components<Value>, more, offset_);
     offset_ += sizeof(size) + size;
     writers_.emplace_back([size, make](AtomicFile& file) {
       file.write({reinterpret_cast<const char*>(&size), sizeof(size)});
@@ -99,6 +110,17 @@ std::vector<std::int32_t> acting_contacts(const assembly::Model& model) {
   return count;
 }
 
+/// [rows] number of the clump of each ball, -1 for those of their own.
+std::vector<std::int64_t> clumps_of(const model::Clumps& clumps, const std::vector<std::int32_t>& rows) {
+  std::vector<std::int64_t> result;
+  result.reserve(rows.size());
+  for (const std::int32_t row : rows) {
+    const std::int32_t clump = clumps.of(row);
+    result.push_back(clump == model::Clumps::none ? -1 : clumps.identity[static_cast<std::size_t>(clump)]);
+  }
+  return result;
+}
+
 constexpr std::string_view frame_head =
     "<?xml version=\"1.0\"?>\n"
     "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
@@ -114,6 +136,17 @@ void write_frame(const std::filesystem::path& file, const std::string& xml, cons
   output.commit();
 }
 
+std::vector<Tensor> stresses(const assembly::Model& model) {
+  std::vector<Tensor> result;
+  for (const Mat3& stress : measures::body_stresses(model)) {
+    Tensor& rows = result.emplace_back();
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 3; ++column)
+        rows[static_cast<std::size_t>(3 * row + column)] = stress(row, column);
+  }
+  return result;
+}
+
 template <class T>
 std::vector<T> numbered_from(T first, std::size_t count) {
   std::vector<T> numbers(count);
@@ -123,7 +156,7 @@ std::vector<T> numbered_from(T first, std::size_t count) {
 
 }  // namespace
 
-void write_frame(const std::filesystem::path& file, const assembly::State& state) {
+void write_frame(const std::filesystem::path& file, const assembly::State& state, bool stress) {
   const model::Bodies& bodies = state.model.bodies;
   const std::vector<std::int32_t> rows = rows_by_identity(bodies);
   const std::size_t count = rows.size();
@@ -142,10 +175,13 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
   xml += "<PointData Scalars=\"radius\">\n";
   xml += column("radius", bodies.radius);
   xml += column("identity", bodies.identity);
+  if (!bodies.clumps.empty())
+    xml += arrays.add("clump", count, [&] { return clumps_of(bodies.clumps, rows); });
   if (!bodies.velocity.empty()) xml += column("velocity", bodies.velocity);
   if (!bodies.spin.empty()) xml += column("spin", bodies.spin);
   xml += column("force", state.force);
   xml += arrays.add("contacts", count, [&] { return gathered(acting_contacts(state.model), rows); });
+  if (stress) xml += arrays.add("stress", count, [&] { return gathered(stresses(state.model), rows); });
   xml += "</PointData>\n<Points>\n";
   xml += column("Points", bodies.position);
   xml += "</Points>\n<Cells>\n";

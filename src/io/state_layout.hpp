@@ -8,22 +8,33 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 /// What stands where in a state file (docs/state-file.md), for the writer and the reader.
 namespace eigengrain::io::layout {
 
 inline constexpr std::string_view format = "eigengrain state";
 /// Grows with every change after which an old reader would misunderstand a file.
-inline constexpr std::int64_t schema = 1;
+inline constexpr std::int64_t schema = 2;
+inline constexpr std::int64_t oldest_schema = 1;
+
+/// The least schema that says all of a state, so that older programs read what they understand: 2 with
+/// clumps.
+inline std::int64_t schema_of(const assembly::State& state) {
+  return state.model.bodies.clumps.empty() ? oldest_schema : schema;
+}
 
 inline const std::string root = "/";
 inline const std::string settings = "/settings";
 inline const std::string bodies = "/bodies";
 inline const std::string position = "/bodies/position";
 inline const std::string spin = "/bodies/spin";
+inline const std::string orientation = "/bodies/orientation";
 inline const std::string moment = "/bodies/moment";
+inline const std::string clumps = "/clumps";
 inline const std::string contacts = "/contacts";
 inline const std::string list = "/neighbour_list";
+inline const std::string ledger = "/ledger";
 inline const std::string list_position = "/neighbour_list/position";
 inline const std::string list_wall_lever = "/neighbour_list/wall_lever";
 inline const std::string surfaces = "/surfaces";
@@ -48,6 +59,24 @@ void for_each_column(State& state, const Visit& visit) {
   visit("/bodies/force", state.force);
 }
 
+/// The columns of the clumps, with as many rows as each has; only where there are clumps.
+template <class Clumps, class Visit>
+void for_each_clump_column(Clumps& all, const Visit& visit) {
+  visit("/clumps/identity", all.identity);
+  visit("/clumps/mass", all.mass);
+  visit("/clumps/volume", all.volume);
+  visit("/clumps/radius", all.radius);
+  visit("/clumps/inertia", all.inertia);
+  visit("/clumps/position", all.position);
+  visit("/clumps/orientation", all.orientation);
+  visit("/clumps/velocity", all.velocity);
+  visit("/clumps/angular_momentum", all.angular_momentum);
+  visit("/clumps/spin", all.spin);
+  visit("/clumps/starts", all.starts);
+  visit("/clumps/member", all.member);
+  visit("/clumps/place", all.place);
+}
+
 /// The numbers of the root.
 template <class State, class Visit>
 void for_each_number(State& state, const Visit& visit) {
@@ -55,6 +84,17 @@ void for_each_number(State& state, const Visit& visit) {
   visit("step", state.step);
   visit("dt", state.dt);
   visit("next_dt", state.next_dt);
+}
+
+/// The numbers of an energy ledger.
+template <class Ledger, class Visit>
+void for_each_energy(Ledger& all, const Visit& visit) {
+  visit("initial", all.initial);
+  for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
+    if constexpr (std::is_const_v<Ledger>)
+      visit(std::string(integral.name), integral.of(all.integrals));
+    else
+      visit(std::string(integral.name), integral.in(all.integrals));
 }
 
 inline std::string group(std::int64_t k) {

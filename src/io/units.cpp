@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -31,6 +32,7 @@ constexpr std::array unit_table{
     UnitRow{"N", {{1, 1, -2}, 1, 0}, "numkMG", "newton"},
     UnitRow{"Pa", {{-1, 1, -2}, 1, 0}, "numkMG", "pascal"},
     UnitRow{"rad", {{0, 0, 0}, 1, 0}, "m", "radian, a pure number"},
+    UnitRow{"deg", {{0, 0, 0}, std::numbers::pi / 180, 0}, "", "degree, π/180"},
 };
 
 constexpr std::array<std::pair<char, int>, 8> prefix_table{

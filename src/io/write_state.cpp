@@ -28,8 +28,12 @@ constexpr std::string_view compiler = "GCC " __VERSION__;
 
 /// Bytes that the file will take at most: its numbers, and room for HDF5's own structures.
 std::size_t largest_size(const assembly::State& state) {
-  constexpr std::size_t body = sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + 8;
+  constexpr std::size_t body =
+      sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + sizeof(Quat) + 8;
   std::size_t size = (1U << 20U) + state.settings.document.size() + body * state.model.bodies.position.size();
+  layout::for_each_clump_column(state.model.bodies.clumps, [&](const char*, const auto& column) {
+    size += (1U << 12U) + column.size() * sizeof(column[0]);
+  });
   state.model.contacts.for_each_group([&](const auto& group) {
     size += (1U << 14U) + group.pairs.size() * (sizeof(contact::Pair) + sizeof(group.states[0]));
   });
@@ -50,7 +54,16 @@ void write_bodies(const assembly::State& state, h5::File& file) {
     file.write(path, column);
   });
   if (!state.model.bodies.spin.empty()) file.write(layout::spin, state.model.bodies.spin);
+  if (!state.model.bodies.orientation.empty())
+    file.write(layout::orientation, state.model.bodies.orientation);
   if (!state.moment.empty()) file.write(layout::moment, state.moment);
+}
+
+void write_clumps(const model::Clumps& clumps, h5::File& file) {
+  if (clumps.empty()) return;
+  file.add_group(layout::clumps);
+  layout::for_each_clump_column(
+      clumps, [&](const std::string& path, const auto& column) { file.write(path, column); });
 }
 
 template <class Group>
@@ -123,7 +136,7 @@ void write_walls(const assembly::State& state, h5::File& file) {
     index.push_back(motions[m].wall);
     centre.push_back(pose.centre);
     const Eigen::Quaterniond& q = pose.orientation;
-    orientation.insert(orientation.end(), {q.w(), q.x(), q.y(), q.z()});
+    orientation.insert(orientation.end(), {q.x(), q.y(), q.z(), q.w()});
   }
   file.add_group(layout::walls);
   file.write(layout::wall_index, index);
@@ -135,12 +148,13 @@ void write_walls(const assembly::State& state, h5::File& file) {
 
 void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::root, "format", layout::format);
-  file.set(layout::root, "schema", layout::schema);
+  file.set(layout::root, "schema", layout::schema_of(state));
   write_provenance(file);
   file.set(layout::root, "scene", state.settings.name);
   layout::for_each_number(state, [&](const char* name, auto value) { file.set(layout::root, name, value); });
   file.write_text(layout::settings, state.settings.document);
   write_bodies(state, file);
+  write_clumps(state.model.bodies.clumps, file);
   write_contacts(state.model.contacts, file);
   file.add_group(layout::list);
   file.set(layout::list, "skin", state.list.skin);
@@ -151,6 +165,11 @@ void write_contents(const assembly::State& state, h5::File& file) {
     file.add_group(layout::surfaces);
     file.write(layout::surface_fingerprint, fingerprints(state.model.surfaces));
   }
+  if (!state.ledger) return;
+  file.add_group(layout::ledger);
+  layout::for_each_energy(*state.ledger, [&](const std::string& name, double energy) {
+    file.set(layout::ledger, name.c_str(), energy);
+  });
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "eigengrain/measures/measure.hpp"
 
 #include "eigengrain/assembly/acting.hpp"
+#include "eigengrain/assembly/clump_members.hpp"
 
 #include <Eigen/Eigenvalues>
 
@@ -26,7 +27,7 @@ Mat3 mean_stress(const Window& window, const assembly::Model& model,
                  std::span<const ActingContact> contacts) {
   Mat3 sum = Mat3::Zero();
   for (const ActingContact& contact : contacts) {
-    const double part = window.line(model.bodies.position[contact.a], contact.branch);
+    const double part = window.line(model::centre_of(model.bodies, contact.a), contact.branch);
     if (part > 0) sum -= part * contact.force * contact.branch.transpose();
   }
   return sum / window.volume();
@@ -34,26 +35,45 @@ Mat3 mean_stress(const Window& window, const assembly::Model& model,
 
 std::vector<Mat3> body_stresses(const assembly::Model& model) {
   std::vector<Mat3> stress(model.bodies.position.size(), Mat3::Zero());
-  assembly::for_each_acting(model, [&](const auto& group, std::size_t c, const auto& geometry) {
+  const contact::Placement placement = model.placement();
+  assembly::for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
-    const Vec3 force = contact::force_now(group.law, geometry, group.states[c]).force;
-    stress[pair.a] -= force * geometry.lever_a.transpose();
-    if constexpr (Kinematics::second_is_body) stress[pair.b] += force * geometry.lever_b.transpose();
+    const Vec3 force = contact::force_now(group.law, placement, pair, geometry, group.states[c]).force;
+    const auto add = [&](std::int32_t row, const Vec3& lever, double sign) {
+      const Vec3 whole = lever + assembly::lever_of(model.bodies, row);
+      stress[model.bodies.clumps.owner(row)] += sign * force * whole.transpose();
+    };
+    // To the contact point, wherever the levers end.
+    const Vec3 beyond = (contact::to_contact_point - geometry.cut) * geometry.overlap * geometry.normal;
+    add(pair.a, geometry.lever_a - beyond, -1);
+    if constexpr (Kinematics::second_is_body) add(pair.b, geometry.lever_b + beyond, 1);
   });
+  const model::Clumps& clumps = model.bodies.clumps;
   for (std::size_t i = 0; i < stress.size(); ++i)
-    stress[i] /= 4 * std::numbers::pi / 3 * std::pow(model.bodies.radius[i], 3);
+    if (clumps.of(static_cast<std::int32_t>(i)) == model::Clumps::none)
+      stress[i] /= 4 * std::numbers::pi / 3 * std::pow(model.bodies.radius[i], 3);
+  for (std::int32_t c = 0; c < clumps.size(); ++c) {
+    const Mat3 mean = stress[clumps.holder(c)] / clumps.volume[c];
+    for (const std::int32_t ball : clumps.members(c)) stress[ball] = mean;
+  }
   return stress;
 }
 
 std::optional<Mat3> velocity_gradient(const Window& window, const model::Bodies& bodies) {
   std::vector<Vec3> position;
   std::vector<Vec3> velocity;
-  for (std::size_t i = 0; i < bodies.position.size(); ++i)
-    window.for_each_inside(bodies.position[i], [&](const Vec3& image) {
+  for (std::int32_t i = 0; i < bodies.size(); ++i) {
+    if (bodies.clumps.owner(i) != i) continue;
+    const std::int32_t clump = bodies.clumps.of(i);
+    window.for_each_inside(model::centre_of(bodies, i), [&](const Vec3& image) {
       position.push_back(image);
-      velocity.push_back(bodies.velocity.empty() ? Vec3(Vec3::Zero()) : bodies.velocity[i]);
+      if (clump != model::Clumps::none)
+        velocity.push_back(bodies.clumps.velocity[clump]);
+      else
+        velocity.push_back(bodies.velocity.empty() ? Vec3(Vec3::Zero()) : bodies.velocity[i]);
     });
+  }
   centre(position);
   centre(velocity);
   Mat3 moments = Mat3::Zero();
@@ -69,9 +89,19 @@ std::optional<Mat3> velocity_gradient(const Window& window, const model::Bodies&
 }
 
 double porosity(const Window& window, const model::Bodies& bodies) {
+  // What the balls of a clump share counts once: each counts with the part that is the clump's volume over
+  // the sum of theirs, which is exact where the clump is wholly inside.
+  std::vector<double> part(bodies.position.size(), 1.0);
+  const model::Clumps& clumps = bodies.clumps;
+  for (std::int32_t c = 0; c < clumps.size(); ++c) {
+    double sum = 0;
+    for (const std::int32_t ball : clumps.members(c))
+      sum += 4 * std::numbers::pi / 3 * std::pow(bodies.radius[ball], 3);
+    for (const std::int32_t ball : clumps.members(c)) part[ball] = clumps.volume[c] / sum;
+  }
   double solid = 0;
   for (std::size_t i = 0; i < bodies.position.size(); ++i)
-    solid += window.ball(bodies.position[i], bodies.radius[i]);
+    solid += part[i] * window.ball(bodies.position[i], bodies.radius[i]);
   return 1 - solid / window.volume();
 }
 
@@ -80,7 +110,9 @@ Fabric fabric(const Window& window, const assembly::Model& model, std::span<cons
   Fabric result;
   std::vector<std::int32_t> seen(model.bodies.position.size(), 0);  // images inside
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    window.for_each_inside(model.bodies.position[i], [&](const Vec3&) { ++seen[i]; });
+    const auto row = static_cast<std::int32_t>(i);
+    if (model.bodies.clumps.owner(row) != row) continue;
+    window.for_each_inside(model::centre_of(model.bodies, row), [&](const Vec3&) { ++seen[i]; });
     result.bodies += seen[i];
     if (rattlers[i]) result.rattlers += seen[i];
   }

@@ -28,6 +28,20 @@ std::vector<T> gather(const std::vector<T>& column, std::span<const std::int32_t
   return result;
 }
 
+/// The clumps whose balls are elsewhere now. Clumps and the order of their balls stay.
+Clumps with_rows_moved(const Clumps& clumps, std::span<const std::int32_t> order) {
+  Clumps result = clumps;
+  if (clumps.empty()) return result;
+  std::vector<std::int32_t> row_now(order.size());
+  result.of_row.resize(order.size());
+  for (std::size_t row = 0; row < order.size(); ++row) {
+    row_now[static_cast<std::size_t>(order[row])] = static_cast<std::int32_t>(row);
+    result.of_row[row] = clumps.of(order[row]);
+  }
+  for (std::int32_t& row : result.member) row = row_now[static_cast<std::size_t>(row)];
+  return result;
+}
+
 }  // namespace
 
 double sphere_mass(double radius, double density) {
@@ -36,6 +50,14 @@ double sphere_mass(double radius, double density) {
 
 double sphere_inertia(double radius, double mass) {
   return 0.4 * mass * radius * radius;
+}
+
+double disk_mass(double radius, double density) {
+  return std::numbers::pi * radius * radius * density;
+}
+
+double disk_inertia(double radius, double mass) {
+  return 0.5 * mass * radius * radius;
 }
 
 Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
@@ -47,7 +69,9 @@ Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
           .material = gather(bodies.material, order),
           .fixed = gather(bodies.fixed, order),
           .velocity = gather(bodies.velocity, order),
-          .spin = gather(bodies.spin, order)};
+          .spin = gather(bodies.spin, order),
+          .orientation = gather(bodies.orientation, order),
+          .clumps = with_rows_moved(bodies.clumps, order)};
 }
 
 void sort_along_curve(Bodies& bodies) {

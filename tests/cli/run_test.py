@@ -29,7 +29,22 @@ walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: glass}]
 RUN = """
 run: {steps: 400}
 outputs: {checkpoint: 100, series: 100}
-histories: [{file: column.csv, every: 50, of: [energies, unbalanced, walls], balls: [2]}]
+measures: [{name: all}]
+histories: [{file: column.csv, every: 50, of: [energies, unbalanced, walls, ledger], measures: all, balls: [2]}]
+"""
+# Three balls hang on each other. The upper bond carries two weights, 327 Pa, and more while they swing.
+CHAIN = """
+gravity: [0, 0, -9.81]
+materials: [{name: glass, density: 2500}]
+contacts:
+  - between: [glass, glass]
+    law: linear
+    kn: 2e4
+    bond: {kind: parallel, kn: 5e8 Pa/m, ks: 2e8 Pa/m, tension: 280 Pa, gap: 1 um}
+balls:
+  - {position: [0, 0, 30 mm], radius: 5 mm, material: glass, fix: all}
+  - {position: [0, 0, 20 mm], radius: 5 mm, material: glass}
+  - {position: [0, 0, 10 mm], radius: 5 mm, material: glass}
 """
 
 
@@ -81,10 +96,29 @@ class Runs(unittest.TestCase):
         self.succeed("run", scene, "--output", self.folder / "parts", "--set", "run.steps=200")
         _, parts = self.succeed("run", self.folder / "parts" / "column.h5", "--set", "run.steps=400", "--threads", 2)
         self.assertEqual(parts["steps"], 200)
-        for key in ("step", "time", "dt", "unbalanced", "energies"):
+        for key in ("step", "time", "dt", "unbalanced", "energies", "ledger"):
             self.assertEqual(whole[key], parts[key], key)
         for file in ("column.csv", "column.pvd"):
             self.assertEqual((self.folder / "whole" / file).read_text(), (self.folder / "parts" / file).read_text())
+
+    def test_bonds_that_break_are_written_down(self):
+        scene = self.scene(CHAIN + "run: {steps: 500}\n")
+        done, report = self.succeed("check", scene)
+        self.assertEqual(report["bonds"], 2)
+        self.assertIn("bonds       2 ball-ball, parallel by contacts[0] glass-glass", done.stdout)
+        done, whole = self.succeed("run", scene, "--output", self.folder / "whole")
+        self.assertEqual(whole["bonds"], {"intact": 1, "broken": 1})
+        self.assertIn("bonds: 1 intact, 1 broken", done.stdout)
+        with open(self.folder / "whole" / "column-breaks.csv", newline="") as table:
+            (row,) = csv.DictReader(table)
+        self.assertEqual({int(row["ball a"]), int(row["ball b"])}, {0, 1})
+        self.assertEqual(row["mode"], "tension")
+        self.assertAlmostEqual(float(row["z [m]"]), 25e-3, delta=1e-5)
+        self.succeed("run", scene, "--output", self.folder / "parts", "--set", "run.steps=3")
+        _, parts = self.succeed("run", self.folder / "parts" / "column.h5", "--set", "run.steps=500")
+        self.assertEqual(parts["energies"], whole["energies"])
+        self.assertEqual((self.folder / "parts" / "column-breaks.csv").read_text(),
+                         (self.folder / "whole" / "column-breaks.csv").read_text())
 
     def test_a_run_needs_an_end(self):
         self.assertIn("run.steps=10000", self.fail("run", self.scene(COLUMN), "--output", self.folder))

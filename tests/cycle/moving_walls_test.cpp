@@ -83,7 +83,14 @@ TEST(MovingWall, TurnsWithABallWithoutSpuriousShear) {
     const std::vector<Vec3> velocity{(x - state.model.bodies.position[0]) / dt};
     const std::vector<Vec3> spin{axis};
     state.model.bodies.position[0] = x;
-    forces.advance(state.model, {state.model.bodies.position, velocity, spin, dt, 1 / dt, &walls}, sum);
+    forces.advance(state.model,
+                   {.position = state.model.bodies.position,
+                    .velocity = velocity,
+                    .spin = spin,
+                    .duration = dt,
+                    .per_second = 1 / dt,
+                    .walls = &walls},
+                   sum);
     state.time += dt;
   }
   const std::vector<Vec3> shears = shears_of(state);

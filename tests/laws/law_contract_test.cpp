@@ -1,3 +1,4 @@
+#include "eigengrain/contact/dissipation.hpp"
 #include "eigengrain/contact/law_table.hpp"
 #include "eigengrain/contact/laws.hpp"
 
@@ -310,6 +311,17 @@ TYPED_TEST(LawContract, EnergyIsTheWorkOfTheForce) {
   });
 }
 
+/// All that a law says it has lost.
+template <class Law>
+double loss(const Law& law, const ContactMotion& motion, const typename Law::State& old,
+            const typename Law::State& next) {
+  if constexpr (DissipativeLaw<Law>) {
+    const Dissipation lost = law.dissipation(motion, old, next);
+    return lost.slip + lost.rolling + lost.viscous + lost.hysteresis;
+  }
+  return 0;
+}
+
 /// A smooth random closed path of displacement and rotation, that also unloads and slips.
 class ClosedPath {
  public:
@@ -343,6 +355,7 @@ TYPED_TEST(LawContract, TakesMoreWorkThanItStores) {
       ContactForce before = commit(moved(n, 0.5, Vec3::Zero()));
       const double stored = law.energy(moved(n, 0.5, Vec3::Zero()), state);
       double work = 0;
+      double lost = 0;
       for (int k = 1; k <= steps; ++k) {
         const double s0 = static_cast<double>(k - 1) / steps;
         const double s1 = static_cast<double>(k) / steps;
@@ -350,7 +363,9 @@ TYPED_TEST(LawContract, TakesMoreWorkThanItStores) {
         const Vec3 phi = way.rotation(s1) - way.rotation(s0);
         ContactMotion motion = moved(n, 0.5 - way.displacement(s0).dot(n), d, phi);
         motion.velocity = 0.5 * steps * d;
+        const typename TypeParam::State old = state;
         const ContactForce now = commit(motion);
+        lost += loss(law, motion, old, state);
         work -= 0.5 * (before.force + now.force).dot(d) + 0.5 * (before.moment + now.moment).dot(phi);
         before = now;
         const double gained =
@@ -358,6 +373,7 @@ TYPED_TEST(LawContract, TakesMoreWorkThanItStores) {
         // The trapezoidal rule errs by 1/12 k'' d³ a step, in all some 1e-9; where a branch changes within a
         // step by up to 1/8 k d², 1e-7 each.
         ASSERT_GT(work - gained, -1e-6) << "path " << path << ", step " << k;
+        ASSERT_NEAR(work - gained, lost, 1e-6) << "path " << path << ", step " << k;
       }
     }
   });
@@ -387,6 +403,58 @@ TYPED_TEST(LawContract, KeepsToTheCoulombCone) {
       EXPECT_LE(f.moment.norm(), value("rolling_friction") * normal * (1 + 1e-14) + 2e-15);
     }
   }
+}
+
+// At constant overlap the trapezoidal rule is exact for springs, slip and dashpots: what the contact stores
+// and dissipates is the work done on it.
+TYPED_TEST(LawContract, DissipatesTheRestOfTheWork) {
+  using State = typename TypeParam::State;
+  std::mt19937_64 random(5);
+  this->for_each_specimen([&](const TypeParam& law) {
+    for (const double size : {0.001, 0.05, 0.5})
+      for (int k = 0; k < 20; ++k) {
+        const Vec3 n = test::random_vector(random).normalized();
+        State old = sheared(law, n, 0.5, random);
+        ContactMotion motion =
+            moved(n, 0.5, size * n.cross(test::random_vector(random)), size * test::random_vector(random));
+        const ContactMotion rest = moved(n, 0.5, Vec3::Zero());
+        State next;
+        State same;
+        ContactForce before = law.evaluate(rest, old, same);
+        if constexpr (asks_rate<TypeParam>) {
+          motion.velocity = 0.3 * motion.displacement;
+          old.viscous = 0.1 * n.cross(test::random_vector(random));
+          before.force += old.viscous;
+        }
+        const ContactForce after = law.evaluate(motion, old, next);
+        const double lost = loss(law, motion, old, next);
+        const double stored = law.energy(rest, next) - law.energy(rest, old);
+        const double work = -0.5 * (before.force + after.force).dot(motion.displacement) -
+                            0.5 * (before.moment + after.moment).dot(motion.rotation);
+        // Energies of order one, a few ulps each.
+        EXPECT_NEAR(stored + lost, work, 1e-14);
+        if constexpr (DissipativeLaw<TypeParam>) {
+          EXPECT_GE(law.dissipation(motion, old, next).slip, 0);
+          EXPECT_GE(law.dissipation(motion, old, next).rolling, 0);
+        }
+      }
+  });
+}
+
+// Where it opens it loses what was left in the springs across n, less what these did on the way.
+TYPED_TEST(LawContract, LosesItsShearWhereItOpens) {
+  using State = typename TypeParam::State;
+  std::mt19937_64 random(8);
+  this->for_each_specimen([&](const TypeParam& law) {
+    const Vec3 n = Vec3::UnitZ();
+    const State old = sheared(law, n, 0.5, random);
+    const ContactMotion rest = moved(n, 0.5, Vec3::Zero());
+    const ContactMotion away{.normal = n, .overlap = -1e-3, .reduced_radius = rest.reduced_radius};
+    if (law.acts(away, old)) return;
+    State bare = law.formed(n);
+    if constexpr (requires { bare.memory; }) bare.memory = old.memory;
+    EXPECT_NEAR(loss(law, away, old, State{}), law.energy(rest, old) - law.energy(rest, bare), 1e-14);
+  });
 }
 
 TEST(Linear, SlipsOnTheCoulombConeAndRemembersIt) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/base/parallel.hpp"
 
 #include "support/motion.hpp"
@@ -18,7 +19,8 @@ struct Threads {
   int before = threads();
 };
 
-/// All that moves in a state: balls, forces, shear, walls, surfaces, and what the near list was made for.
+/// All that moves in a state: balls, clumps, forces, shear, the number of bonds, walls, surfaces, and what
+/// the near list was made for.
 inline std::string bits_of(const assembly::State& state) {
   std::string bits;
   const auto add = [&](const auto& column) {
@@ -27,6 +29,12 @@ inline std::string bits_of(const assembly::State& state) {
   add(state.model.bodies.position);
   add(state.model.bodies.velocity);
   add(state.model.bodies.spin);
+  for (const Quat& q : state.model.bodies.orientation) add(q.coeffs());
+  add(state.model.bodies.clumps.position);
+  for (const Quat& q : state.model.bodies.clumps.orientation) add(q.coeffs());
+  add(state.model.bodies.clumps.velocity);
+  add(state.model.bodies.clumps.angular_momentum);
+  add(state.model.bodies.clumps.spin);
   add(state.force);
   add(state.moment);
   add(shears_of(state));
@@ -41,6 +49,7 @@ inline std::string bits_of(const assembly::State& state) {
   }
   add(std::vector<double>{state.time, state.list.wall_way});
   add(state.list.wall_lever);
+  bits += std::to_string(assembly::count_bonds(state.model));
   return bits;
 }
 

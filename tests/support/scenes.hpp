@@ -53,6 +53,11 @@ class SceneBuilder {
     if (!b.spin.empty()) b.spin.emplace_back(Vec3::Zero());
     return *this;
   }
+  /// A clump, behind all balls.
+  SceneBuilder& clump(const model::ClumpShape& shape, const model::ClumpStart& start) {
+    model::add_clump(scene_.bodies, shape, start);
+    return *this;
+  }
   /// Velocity and spin of the ball added last.
   SceneBuilder& moving(const Vec3& velocity, const Vec3& spin = Vec3::Zero()) {
     model::Bodies& b = scene_.bodies;
@@ -61,6 +66,17 @@ class SceneBuilder {
     if (b.spin.empty() && spin.isZero(0)) return *this;
     b.spin.resize(b.position.size(), Vec3::Zero());
     b.spin.back() = spin;
+    return *this;
+  }
+  /// Bonds of the scene's one contact rule.
+  SceneBuilder& bonded(model::BondRule bond) {
+    scene_.contacts.back().bond = std::move(bond);
+    return *this;
+  }
+  /// No law between balls, so that bonds are alone.
+  SceneBuilder& without_law() {
+    scene_.contacts.back().law = "none";
+    scene_.contacts.back().parameters.clear();
     return *this;
   }
   SceneBuilder& gravity(const Vec3& g) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/tangent.hpp"
 
 #include "support/scenes.hpp"
@@ -12,6 +13,29 @@ namespace eigengrain::test {
 inline assembly::Displacement no_displacement(const assembly::Model& model) {
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   return {std::vector<Vec3>(bodies, Vec3::Zero()), std::vector<Vec3>(bodies, Vec3::Zero())};
+}
+
+/// A displacement and one number more: column 6 i + k is u_k of body i, 6 i + 3 + k its θ_k.
+inline assembly::Displacement with_number(assembly::Displacement d, int column, double value) {
+  (column % 6 < 3 ? d.translation : d.rotation)[static_cast<std::size_t>(column / 6)][column % 3] += value;
+  return d;
+}
+
+/// That number alone.
+inline assembly::Displacement one_number(const assembly::Model& model, int column, double value) {
+  return with_number(no_displacement(model), column, value);
+}
+
+/// Forces and moments of all bodies [6 bodies] after a displacement.
+inline Eigen::VectorXd force_vector(const assembly::Model& model,
+                                    const assembly::Displacement& displacement) {
+  const assembly::BodyForces f = assembly::contact_forces(model, displacement);
+  Eigen::VectorXd v(6 * model.bodies.size());
+  for (std::size_t i = 0; i < f.force.size(); ++i) {
+    v.segment<3>(static_cast<Eigen::Index>(6 * i)) = f.force[i];
+    v.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) = f.moment[i];
+  }
+  return v;
 }
 
 /// A sink that adds to one dense matrix on (u, θ) of all bodies.
@@ -28,26 +52,20 @@ struct DenseTangent {
   Eigen::MatrixXd k;
 };
 
-/// Minus the derivative of (force, moment) of all bodies after a displacement from where they stand, by steps
-/// of h.
+/// Minus the derivative of (force, moment) of all bodies after a displacement from where they stand, by
+/// central differences of h.
 inline Eigen::MatrixXd numerical_tangent(const assembly::Model& model, const assembly::Displacement& at,
                                          double h) {
   const int size = 6 * model.bodies.size();
   Eigen::MatrixXd k(size, size);
-  const auto forces = [&](int column, double step) {
-    assembly::Displacement d = at;
-    (column % 6 < 3 ? d.translation : d.rotation)[static_cast<std::size_t>(column / 6)][column % 3] += step;
-    const assembly::BodyForces f = assembly::contact_forces(model, d);
-    Eigen::VectorXd v(size);
-    for (std::size_t i = 0; i < f.force.size(); ++i) {
-      v.segment<3>(static_cast<Eigen::Index>(6 * i)) = f.force[i];
-      v.segment<3>(static_cast<Eigen::Index>(6 * i + 3)) = f.moment[i];
-    }
-    return v;
-  };
   for (int column = 0; column < size; ++column)
-    k.col(column) = -(forces(column, h) - forces(column, -h)) / (2 * h);
+    k.col(column) = -(force_vector(model, with_number(at, column, h)) -
+                      force_vector(model, with_number(at, column, -h))) /
+                    (2 * h);
   return k;
+}
+inline Eigen::MatrixXd numerical_tangent(const assembly::Model& model) {
+  return numerical_tangent(model, no_displacement(model), 1e-6);
 }
 
 }  // namespace eigengrain::test

@@ -34,6 +34,14 @@ TEST(BallBall, GeometryOfEquations1_5To1_8) {
   EXPECT_TRUE(g.lever_b.isApprox(Vec3(0, 0, -1.85), 1e-15));
 }
 
+TEST(BallBall, LeversMayEndAtTheSurfaces) {
+  const ContactGeometry g = ball_ball({1, 0, 0}, 1.0, {1, 0, 2.7}, 2.0, to_surface);
+  EXPECT_EQ(g.lever_a, Vec3(0, 0, 1));
+  EXPECT_EQ(g.lever_b, Vec3(0, 0, -2));
+  EXPECT_LT((g.branch() - Vec3(0, 0, 2.7)).norm(), 1e-15);
+  EXPECT_LT((ball_ball({1, 0, 0}, 1.0, {1, 0, 2.7}, 2.0).branch() - Vec3(0, 0, 2.7)).norm(), 1e-15);
+}
+
 TEST(BallPlane, HoldsACentreThatHasCrossed) {
   const model::Plane plane{{0, 0, 1}, {0, 0, 1}, 0, ""};
   const ContactGeometry above = ball_plane({5, 5, 1.75}, 1.0, plane);

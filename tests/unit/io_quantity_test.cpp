@@ -80,7 +80,7 @@ TEST(Quantity, SaysWhatIsWrongAndWhatToWrite) {
            {"2500 kg", "kg/m3", R"("2500 kg" is a mass; a density is wanted, e.g. "2500 kg/m3")"},
            {"9.81 m", "m/s2", R"("9.81 m" is a length; an acceleration is wanted, e.g. "9.81 m/s2")"},
            {"0.5 N", "", R"("0.5 N" is a force; a pure number is wanted, e.g. "0.5")"},
-           {"10 deg", "", R"("10 deg": "deg" is no unit known here)"},
+           {"10 turns", "", R"("10 turns": "turns" is no unit known here)"},
            {"5 /s", "s", R"("5 /s" is a rate; a time is wanted, e.g. "5 s")"},
            {"5 m2 kg s", "m", R"("5 m2 kg s" is a quantity in kg m2 s; a length is wanted, e.g. "5 m")"},
            {"5 KN", "N", R"("KN" is no unit known here; did you mean "kN"?)"},

@@ -415,9 +415,10 @@ TEST(Mistakes, Histories) {
                           "(scene.yaml:6); choose another name"));
   EXPECT_THAT(histories("{file: a.csv, every: 0, of: energies}"),
               ElementsAre(HasSubstr("histories[0].every: 0; a whole number >= 1 is wanted")));
-  EXPECT_THAT(
-      histories("{file: a.csv, of: [energy]}"),
-      ElementsAre(HasSubstr("histories[0].of[0]: \"energy\" is none of energies, unbalanced, walls")));
+  EXPECT_THAT(histories("{file: a.csv, of: [energy]}"),
+              ElementsAre(HasSubstr(
+                  "histories[0].of[0]: \"energy\" is none of energies, unbalanced, walls, wall_moments, "
+                  "wall_positions, ledger")));
   EXPECT_THAT(
       histories("{file: a.csv}"),
       ElementsAre("scene.yaml:6: histories[0]: no columns; add e.g. \"of: [energies, unbalanced, walls]\", "
@@ -454,7 +455,7 @@ TEST(Mistakes, Outputs) {
   EXPECT_THAT(outputs("series: 1 s"),
               ElementsAre(HasSubstr("outputs.series: \"1 s\" is not a whole number")));
   EXPECT_THAT(outputs("frames: 5"),
-              ElementsAre(HasSubstr("frames: unknown key (outputs takes checkpoint, series)")));
+              ElementsAre(HasSubstr("frames: unknown key (outputs takes checkpoint, series, fields)")));
 }
 
 TEST(Mistakes, ThatABigSceneRepeatsAreCounted) {

@@ -71,9 +71,18 @@ std::vector<std::string> scenes_with_room() {
   const std::string polygon =
       "walls: [{polygon: {corners: [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}, material: grain}]\n";
   const std::string mesh = "walls: [{mesh: {file: drum.stl, unit: mm}, material: grain}]\n";
+  const std::string clump =
+      "clumps: [{balls: [{at: [0, 0, 0], radius: 5 mm}], material: grain, instances: [{position: [0.2, 0.2, "
+      "0.2]}]}]\n";
+  const std::string clump_as_given =
+      "clumps: [{balls: [{at: [0, 0, 0], radius: 5 mm}], material: grain, mass: 1 g, centre: [0, 0, 0], "
+      "inertia: [1e-8, 1e-8, 1e-8], instances: [{position: [0.2, 0.2, 0.2]}]}]\n";
   const std::string periodic = "periodic: {box: [1, 1, 1]}\n";
   const std::string fixed = "timestep: {policy: fixed, dt: 1e-5}\n";
   const std::string table = "histories: [{file: table.csv, of: unbalanced, balls: 0}]\n";
+  const std::string region = "measures: [{name: middle}]\noutputs: {series: 1000}\n";
+  const std::string sphere = "measures: [{sphere: {centre: [0, 0, 0], radius: 1}}]\n";
+  const std::string region_box = "measures: [{box: {min: [-1, -1, -1], max: [0.5, 0.5, 0.5]}}]\n";
   const std::string no_law = "contacts: [{between: [grain, grain], law: none}]\n";
   std::vector<std::string> scenes{materials + no_law + ball,
                                   materials + no_law + file + fixed,
@@ -87,18 +96,31 @@ std::vector<std::string> scenes_with_room() {
                                   materials + no_law + passing,
                                   materials + no_law + ball + plane,
                                   materials + no_law + ball + box,
+                                  materials + no_law + ball + clump,
+                                  materials + no_law + ball + clump_as_given,
                                   materials + no_law + ball + carried,
                                   materials + no_law + ball + polygon,
                                   materials + no_law + ball + driven,
                                   materials + no_law + ball + mesh,
                                   materials + no_law + ball + periodic,
-                                  materials + no_law + ball + table};
+                                  materials + no_law + ball + table + region,
+                                  materials + no_law + ball + sphere,
+                                  materials + no_law + ball + region_box};
   for (const contact::LawDescription& law : contact::law_descriptions()) {
     std::string needed;
     for (const KeyDescription* key : section_keys("contacts[]", law.name))
       if (key->required && !key->law.empty()) needed += fmt::format(", {}: {}", key->name(), key->example);
     scenes.push_back(materials + ball +
                      fmt::format("contacts: [{{between: [any, any], law: {}{}}}]\n", law.name, needed));
+  }
+  for (const contact::LawDescription& bond : contact::bond_descriptions()) {
+    std::string needed;
+    for (const KeyDescription* key : section_keys("contacts[].bond", bond.name))
+      if (key->required && !key->law.empty()) needed += fmt::format(", {}: {}", key->name(), key->example);
+    scenes.push_back(
+        materials + ball +
+        fmt::format("contacts: [{{between: [any, any], law: linear, kn: 1, bond: {{kind: {}{}}}}}]\n",
+                    bond.name, needed));
   }
   return scenes;
 }

@@ -45,6 +45,15 @@ class StateDamage : public testing::Test {
   std::string whole_;
 };
 
+TEST_F(StateDamage, OrientationsThatAreNoRotations) {
+  state_.model.bodies.orientation.assign(state_.model.bodies.position.size(), Quat::Identity());
+  write_state(state_, file_);
+  whole_ = contents(file_);
+  EXPECT_EQ(after([](hid_t) {}), "");
+  EXPECT_THAT(with_value("/bodies/orientation", H5T_NATIVE_DOUBLE, 3, 0.5),
+              HasSubstr("is no unit quaternion"));
+}
+
 TEST_F(StateDamage, WhatIsNoState) {
   EXPECT_THAT(refusal(folder_.path() / "stat.h5"),
               AllOf(HasSubstr("there is no file"), HasSubstr("did you mean \"state.h5\"")));
@@ -72,7 +81,7 @@ TEST_F(StateDamage, OtherSchemas) {
       H5Sclose(space);
     });
   };
-  EXPECT_THAT(with_schema(2), HasSubstr("written by a newer version"));
+  EXPECT_THAT(with_schema(3), HasSubstr("written by a newer version"));
   EXPECT_THAT(with_schema(0), HasSubstr("no schema that exists"));
   EXPECT_EQ(with_schema(1), "");
 }

@@ -399,6 +399,18 @@ TEST(Rattlers, NeedFourContactsWithoutFrictionOrThreeAndTheirWeight) {
   EXPECT_EQ(measured(builder.gravity({-1, -1, -1}).build()).fabric.rattlers, 0);
 }
 
+TEST(Rattlers, NeedOneContactLessInAPlane) {
+  constexpr model::FixedComponents in_plane{0b011100};
+  SceneBuilder builder({.kn = 1, .tension = false});
+  builder.ball(Vec3::Zero(), 1, 1, in_plane);
+  for (const double degrees : {0.0, 120.0, 240.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Vec3 n(std::cos(angle), std::sin(angle), 0);
+    builder.plane(-0.99 * n, n);
+  }
+  EXPECT_EQ(measured(builder.build()).fabric.rattlers, 0);
+}
+
 TEST(Sliding, IsSeenAtTheLimitAndNotBelow) {
   SceneBuilder builder({.kn = 1, .ks = 0.5, .tension = false, .friction = 0.5});
   for (int k = 0; k < 4; ++k) builder.ball({3.0 * k, 0, 0.9});

@@ -1,4 +1,5 @@
 // A few bodies of a packing cycled by themselves.
+#include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/cycle/cycle.hpp"
@@ -7,10 +8,14 @@
 #include "eigengrain/relaxation/relax.hpp"
 
 #include "relaxation/part.hpp"
+#include "support/motion.hpp"
+#include "support/scenes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -64,6 +69,17 @@ std::vector<std::int32_t> highest_of(const assembly::State& state) {
       x.begin())};
 }
 
+/// The row of the ball in the middle of bonded_row.
+std::size_t middle_of(const assembly::State& state) {
+  const std::vector<std::int64_t>& identity = state.model.bodies.identity;
+  return static_cast<std::size_t>(std::find(identity.begin(), identity.end(), 4) - identity.begin());
+}
+
+/// Force or moment of the contacts on a body.
+Vec3 total_on(const assembly::State& state, std::size_t row, bool moment) {
+  return moment ? state.moment[row] : state.force[row];
+}
+
 TEST(Part, ThatDoesNothingLeavesTheWholeAsItWas) {
   for (const char* surroundings : {box, mesh, cell}) {
     SCOPED_TRACE(surroundings);
@@ -107,6 +123,59 @@ TEST(Part, HoldsAllButTheMoversAndTheirNeighbours) {
   for (std::size_t i = 0; i < after.size(); ++i) moved += after[i] != before[i] ? 1 : 0;
   EXPECT_GE(moved, 1U);
   EXPECT_LT(moved, 30U);
+}
+
+/// A row of nine bonded balls in the air, the middle one moving.
+assembly::State bonded_row(const std::string& kind, double tension) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  SceneBuilder builder(Springs{.kn = 1, .ks = 0.5, .tension = false});
+  for (int k = 0; k < 9; ++k) builder.ball({2.0 * k, 0, 0});
+  builder.bonded(kind == "contact" ? model::BondRule{kind, {tension, infinity}, 0.5}
+                                   : model::BondRule{kind, {1, 1, 0.5, tension, infinity, 0}, 0.5});
+  assembly::State state = cycle::start(builder.scene());
+  state.model.bodies.velocity[middle_of(state)] = {0, 0.02, 0.01};
+  if (state.turns()) state.model.bodies.spin[middle_of(state)] = {0.01, 0, 0.02};
+  return state;
+}
+
+TEST(Part, TakesBondsAndOrientationsWithIt) {
+  for (const std::string kind : {"parallel", "contact"}) {
+    assembly::State state = bonded_row(kind, std::numeric_limits<double>::infinity());
+    const auto middle = static_cast<std::int32_t>(middle_of(state));
+    const std::vector<std::int32_t> movers{middle};
+    ASSERT_EQ(assembly::count_bonds(state.model), 8);
+    relaxation::Part part(state, movers);
+    // The mover, its two neighbours, and one held ball on each side: four bonds hang on free balls.
+    EXPECT_EQ(part.state().model.bodies.size(), 5);
+    EXPECT_EQ(assembly::count_bonds(part.state().model), 4);
+    cycle::Cycle cycle(std::move(part.state()), fixed_step(0.1));
+    cycle.run(20);
+    const assembly::State& end = cycle.state();
+    part.put_back(end, state);
+    EXPECT_EQ(assembly::count_bonds(state.model), 8) << kind;
+    std::size_t turned = 0;
+    for (const Quat& q : state.model.bodies.orientation) turned += q.coeffs() != Quat::Identity().coeffs();
+    EXPECT_EQ(turned, kind == "parallel" ? 3U : 0U);
+    // The whole feels what the part felt: a bond that was lost, or found another place, would pull otherwise.
+    for (const bool moment : {false, true}) {
+      const Vec3 of_part = total_on(end, middle_of(end), moment);
+      EXPECT_GT(of_part.norm(), 1e-4);
+      EXPECT_LT((total_on(state, middle_of(state), moment) - of_part).norm(), 1e-14) << kind;
+    }
+  }
+}
+
+TEST(Part, TellsTheWholeWhichBondsBroke) {
+  for (const std::string kind : {"parallel", "contact"}) {
+    assembly::State state = bonded_row(kind, 1e-9);
+    const std::vector<std::int32_t> movers{static_cast<std::int32_t>(middle_of(state))};
+    relaxation::Part part(state, movers);
+    cycle::Cycle cycle(std::move(part.state()), fixed_step(0.1));
+    cycle.run(20);
+    part.put_back(cycle.state(), state);
+    EXPECT_GT(state.breaks.size(), 0U) << kind;
+    EXPECT_EQ(std::ssize(state.breaks) + assembly::count_bonds(state.model), 8) << kind;
+  }
 }
 
 // A body that was free in one part, and has a velocity from there, may be held in the next.

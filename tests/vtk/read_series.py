@@ -1,5 +1,6 @@
 """Frames for ParaView as VTK reads them: equal to what was written, to the last bit. Usage: read_series.py WRITER"""
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -77,8 +78,8 @@ class Series(unittest.TestCase):
             self.assertTrue(same_bits(vtk_to_numpy(grid.GetPoints().GetData()), wanted["position"]))
             data = grid.GetPointData()
             found = {data.GetArrayName(k) for k in range(data.GetNumberOfArrays())}
-            self.assertEqual(found, names | {"contacts"} | ({"spin"} if "spin" in wanted else set()))
-            for name in found - {"contacts"}:
+            self.assertEqual(found, names | {"contacts"} | ({"spin", "stress"} if "spin" in wanted else set()))
+            for name in found - {"contacts", "stress"}:
                 self.assertTrue(same_bits(vtk_to_numpy(data.GetArray(name)), wanted[name]), name)
             self.assertEqual(data.GetScalars().GetName(), "radius")
 
@@ -104,21 +105,30 @@ class Series(unittest.TestCase):
             radius = vtk_to_numpy(data.GetArray("radius"))
             count = numpy.zeros(len(x), dtype=int)
             force = numpy.zeros_like(x)
+            stress = numpy.zeros((len(x), 3, 3))  # f ⊗ R, R from the centre to the contact point
             for i in range(len(x)):
                 for j in range(len(x)):
                     distance = numpy.linalg.norm(x[i] - x[j])
                     if i != j and distance < radius[i] + radius[j]:
                         count[i] += 1
-                        force[i] += self.stiffness * (radius[i] + radius[j] - distance) * (x[i] - x[j]) / distance
+                        overlap = radius[i] + radius[j] - distance
+                        push = self.stiffness * overlap * (x[i] - x[j]) / distance
+                        force[i] += push
+                        stress[i] += numpy.outer(push, (radius[i] - overlap / 2) * (x[j] - x[i]) / distance)
                 overlap = radius[i] - (x[i][2] + 1.5)  # with the wall at z = -1.5
                 if overlap > 0:
                     count[i] += 1
                     force[i][2] += self.stiffness * overlap
+                    stress[i][2][2] -= self.stiffness * overlap * (radius[i] - overlap / 2)
             self.assertEqual(list(vtk_to_numpy(data.GetArray("contacts"))), list(count))
             self.assertGreater(count.sum(), 0)
             # Sums in another order: off by a few roundings of the largest force.
             scale = numpy.abs(force).max()
             numpy.testing.assert_allclose(vtk_to_numpy(data.GetArray("force")), force, rtol=0, atol=1e-12 * scale)
+            if data.GetArray("stress") is not None:
+                stress /= (4 / 3 * math.pi * radius ** 3)[:, None, None]
+                found = vtk_to_numpy(data.GetArray("stress")).reshape(-1, 3, 3)
+                numpy.testing.assert_allclose(found, stress, rtol=0, atol=1e-12 * numpy.abs(stress).max())
 
 
 if __name__ == "__main__":

@@ -81,11 +81,11 @@ void write_all(const std::filesystem::path& folder) {
   io::Series sliding(folder, "sliding");
   for (const std::int64_t step : {0, 1, 2}) written.add(sliding, "sliding", step, false);
   {
-    io::Series killed(folder, "turning & more");
+    io::Series killed(folder, "turning & more", io::Series::Of::balls, true);
     for (const std::int64_t step : {0, 10, 20, 30}) written.add(killed, "turning & more", step, true);
   }
   // Goes on from a checkpoint at 20, before frame 30, and writes others from there on.
-  io::Series again(folder, "turning & more");
+  io::Series again(folder, "turning & more", io::Series::Of::balls, true);
   again.continue_from(20);
   for (const std::int64_t step : {20L, 30L, 12'345'678'901L})
     written.add(again, "turning & more", step, true);

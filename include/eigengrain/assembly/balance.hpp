@@ -9,7 +9,8 @@
 namespace eigengrain::assembly {
 
 /// How far a model is from equilibrium: resultants of contacts and gravity on the free components of bodies
-/// with at least one acting contact, over the mean force of the acting contacts.
+/// with at least one acting contact, over the mean force of the acting contacts. A clump counts as one body;
+/// its moments are over the radius of the sphere that holds it.
 struct Balance {
   double mean = 0;         ///< mean resultant force / mean contact force: the unbalanced ratio
   double max = 0;          ///< largest resultant force / mean contact force
@@ -25,9 +26,9 @@ struct Balance {
   double mean_contact_force = 0;  ///< N
 };
 
-/// contacts  the sum of contact forces on the bodies of the model as it stands. Without an acting contact the
+/// of_balls  the sum of contact forces on the balls of the model as it stands. Without an acting contact the
 ///           ratios are 0. Cost: about one sum of forces.
-Balance balance_of(const Model& model, const BodyForces& contacts);
+Balance balance_of(const Model& model, const BodyForces& of_balls);
 
 Balance balance_of(const State& state);
 

@@ -8,7 +8,8 @@
 
 namespace eigengrain::assembly {
 
-/// The 6×6 diagonal blocks of K, one a body, on (u, θ); fixed components are not struck out. A sink of
+/// The 6×6 diagonal blocks of K, one a body, on (u, θ) along the axes of space; fixed components are not
+/// struck out, and a clump's block is in the row of its holder. A sink of
 /// assemble_stiffness: what point-block preconditioners and estimates per body are made of. Memory 288 bytes
 /// a body.
 class BlockDiagonal {

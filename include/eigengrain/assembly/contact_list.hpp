@@ -3,7 +3,10 @@
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/state.hpp"
 
+#include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
 
 /// Which contacts a model has, from where its bodies are.
 namespace eigengrain::assembly {
@@ -12,6 +15,11 @@ namespace eigengrain::assembly {
 /// the rule's law and serves its parameters. `index` is the rule's place in Scene::contacts. Throws
 /// InputError for a law, a kinematics or a number of parameters that do not exist.
 contact::AnyGroup new_group(std::string_view kinematics, const model::ContactRule& rule, std::int32_t index);
+
+/// The values of all parameters of a rule's law: those of the rule, and defaults for those left out at the
+/// end. Throws InputError where that does not make their number.
+std::vector<double> law_values(const model::ContactRule& rule, std::int32_t index,
+                               std::span<const contact::ParameterDescription> parameters);
 
 /// Whether any contact that the rules of a scene allow can turn a body. Contacts may form later, so the rules
 /// decide and not the contacts.

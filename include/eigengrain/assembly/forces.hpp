@@ -1,7 +1,9 @@
 #pragma once
 
+#include "eigengrain/assembly/bond_break.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/moving_walls.hpp"
+#include "eigengrain/contact/dissipation.hpp"
 
 #include <cstdint>
 #include <span>
@@ -15,6 +17,9 @@ struct Displacement {
   std::vector<Vec3> rotation;     ///< [bodies] θ, rad; or empty
 };
 
+/// The orientations of bodies after rotations θ [bodies] (rad; or empty: none); empty where bodies have none.
+std::vector<Quat> turned_orientations(const model::Bodies& bodies, std::span<const Vec3> rotation);
+
 /// Where bodies are and how they came there from the committed state: by u = duration · velocity and
 /// θ = duration · spin. The cycle passes its velocities and its step; displacements are velocities for a
 /// duration of one.
@@ -23,6 +28,7 @@ struct Trial {
   std::span<const Vec3> velocity;  ///< [bodies]
   std::span<const Vec3> spin;      ///< [bodies]; or empty: nothing turns
   double duration = 1;
+  std::span<const Quat> orientation{};  ///< [bodies] turned by θ; or empty where nothing asks for it
   double per_second = 0;  ///< 1/Δt of a step in time; 0: nothing moves in time, and dashpots do nothing
   const WallStep* walls = nullptr;  ///< how walls moved; null: all stand still
 
@@ -34,7 +40,7 @@ struct Trial {
 
 /// Where the sides of contacts are in a trial state.
 inline contact::Placement placement_in(const Model& model, const Trial& trial) {
-  contact::Placement placement = model.placement(trial.position);
+  contact::Placement placement = model.placement(trial.position, trial.orientation);
   if (trial.walls != nullptr) {
     placement.middle_walls = trial.walls->middle;
     placement.middle_surfaces = trial.walls->middle_surfaces;
@@ -44,14 +50,14 @@ inline contact::Placement placement_in(const Model& model, const Trial& trial) {
 
 /// The motion of a contact in a trial state, as its law wants it.
 template <class Kinematics, class Law>
-contact::ContactMotion motion_in(const Law& law, const contact::Placement& placement, const Trial& trial,
+contact::MotionOf<Law> motion_in(const Law& law, const contact::Placement& placement, const Trial& trial,
                                  const contact::Pair& pair, const contact::ContactGeometry& geometry) {
   contact::SideMotion second;
   if constexpr (Kinematics::second_is_body)
     second = trial.side(pair.b);
   else if (trial.walls != nullptr)
     second = trial.walls->side[static_cast<std::size_t>(Kinematics::wall(placement, pair))];
-  contact::ContactMotion motion =
+  contact::MotionOf<Law> motion =
       contact::motion_for<Kinematics>(law, placement, pair, geometry, trial.side(pair.a), second);
   if constexpr (contact::asks_rate<Law>) {
     motion.velocity = trial.per_second * motion.displacement;
@@ -79,8 +85,13 @@ class ContactForceSum {
   /// Forces after a trial displacement. Nothing is stored in the contacts: the same call with the same
   /// displacement gives the same forces.
   void evaluate(const Model& model, const Trial& trial, BodyForces& sum);
-  /// The same, and the contacts remember: the trial displacement becomes the committed state.
-  void advance(Model& model, const Trial& trial, BodyForces& sum);
+  /// The same, and the contacts remember: the trial displacement becomes the committed state. What they
+  /// dissipate on the way is added to `dissipated` if it is given; if not, it is not computed.
+  void advance(Model& model, const Trial& trial, BodyForces& sum, contact::Dissipation* dissipated = nullptr);
+
+  /// Bonds that broke in the last `advance`, in the order of the contacts; steps, times and
+  /// entries are left to note_breaks.
+  std::span<const BondBreak> broken() const { return broken_; }
 
  private:
   /// A group's contacts by chunk of their first body, and where each puts its force on a body elsewhere.
@@ -93,9 +104,11 @@ class ContactForceSum {
   template <bool turns, bool commit, class ModelRef>
   void sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum);
   template <bool turns, bool commit, class Group>
-  void sum_group(const GroupPlan& plan, Group& group, const contact::Placement& placement, const Trial& trial,
-                 BodyForces& sum);
+  void sum_group(const GroupPlan& plan, Group& group, const model::Bodies& bodies,
+                 const contact::Placement& placement, const Trial& trial, BodyForces& sum);
   void add_foreign(BodyForces& sum) const;
+  /// Decides which triangles of surfaces are contacts.
+  void follow_facets(Model& model, const contact::Placement& placement) const;
 
   std::int64_t chunk_size_ = 0;
   bool turns_ = false;
@@ -103,6 +116,8 @@ class ContactForceSum {
   std::vector<std::int32_t> foreign_starts_;  ///< [bodies + 1] slots of a body
   std::vector<Vec3> foreign_force_;           ///< [slots]
   std::vector<Vec3> foreign_moment_;
+  std::vector<BondBreak> broken_;
+  std::vector<std::vector<BondBreak>> broken_in_chunk_;  ///< of the group at hand
 };
 
 /// Finds the forces of a state anew from where everything is, as of contacts that stand still: springs keep

@@ -18,7 +18,8 @@ struct LinearSystem {
   /// [elements] the dashpots of the elements; empty where no contact has any.
   std::vector<contact::ContactDamping> damping;
   Unknowns unknowns;
-  /// [unknowns.size()] the diagonal of M: mass for a u (kg), moment of inertia for a θ (kg m²). Masked
+  /// [unknowns.size()] the diagonal of M: mass for a u (kg), moment of inertia for a θ (kg m²), of
+  /// clumps the three principal ones. Masked
   /// components carry it too; it is never zero.
   std::vector<double> mass;
 

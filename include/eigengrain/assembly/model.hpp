@@ -20,8 +20,9 @@ struct Model {
   std::vector<model::WallMotion> wall_motions;        ///< of those that move
   std::vector<model::WallPose> wall_poses;            ///< [wall_motions] where these are now
   model::PeriodicCell cell;
-  Vec3 gravity = Vec3::Zero();  ///< m/s²
-  double local_damping = 0;     ///< α
+  Vec3 gravity = Vec3::Zero();                   ///< m/s²
+  double local_damping = 0;                      ///< α
+  double lever_cut = contact::to_contact_point;  ///< of the overlap, from the levers of contacts
   contact::Contacts contacts;
 
   /// Walls of all kinds: planes, then surfaces.
@@ -32,9 +33,17 @@ struct Model {
   }
 
   /// The sides of contacts with the bodies where they are, or at trial positions [bodies].
-  contact::Placement placement() const { return placement(bodies.position); }
-  contact::Placement placement(std::span<const Vec3> position) const {
-    return {position, bodies.radius, walls, cell, bodies.mass, {}, &facets, surface_places, {}};
+  contact::Placement placement() const { return placement(bodies.position, bodies.orientation); }
+  contact::Placement placement(std::span<const Vec3> position, std::span<const Quat> orientation) const {
+    return {.position = position,
+            .radius = bodies.radius,
+            .walls = walls,
+            .cell = cell,
+            .mass = bodies.mass,
+            .facets = &facets,
+            .surfaces = surface_places,
+            .lever_cut = lever_cut,
+            .orientation = orientation};
   }
 };
 

@@ -15,7 +15,7 @@ inline Mat3 masked(const Unknowns& unknowns, std::int32_t row, std::int32_t colu
 }
 
 /// Calls add(row block, column block, 3×3 block) for every part of a 6×6 on (u, θ) of two bodies that has
-/// unknowns.
+/// unknowns; θ along the axes of the unknowns.
 template <class Add>
 void scatter_pair(std::int32_t row_body, std::int32_t column_body, const Mat6& block,
                   const Unknowns& unknowns, const Add& add) {
@@ -34,7 +34,12 @@ void scatter_pair(std::int32_t row_body, std::int32_t column_body, const Mat6& b
 /// add up.
 template <class Add>
 void scatter(const contact::ContactElement& element, const Unknowns& unknowns, const Add& add) {
-  const contact::ContactBlocks k = contact::stiffness_blocks(element);
+  contact::ContactBlocks k = contact::stiffness_blocks(element);
+  if (unknowns.has_axes()) {
+    k.aa = unknowns.in_own_axes(element.a, element.a, k.aa);
+    k.ab = unknowns.in_own_axes(element.a, element.b, k.ab);
+    k.bb = unknowns.in_own_axes(element.b, element.b, k.bb);
+  }
   scatter_pair(element.a, element.a, k.aa, unknowns, add);
   if (element.b == contact::no_body) return;
   scatter_pair(element.a, element.b, k.ab, unknowns, add);

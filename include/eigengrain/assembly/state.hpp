@@ -1,9 +1,13 @@
 #pragma once
 
+#include "eigengrain/assembly/bond_break.hpp"
+#include "eigengrain/assembly/ledger.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/model/scene.hpp"
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace eigengrain::assembly {
@@ -27,12 +31,24 @@ struct State {
   std::vector<Vec3> force;   ///< [bodies] of contacts, gravity left out, at t, N
   std::vector<Vec3> moment;  ///< [bodies] about the centres, N m; empty where nothing turns
   NeighbourList list;
-  double time = 0;        ///< t, s
-  std::int64_t step = 0;  ///< cycles since the start
-  double dt = 0;          ///< of the last cycle, s; 0 before the first
-  double next_dt = 0;     ///< that the timestep policy chose for the next one, s
+  double time = 0;                       ///< t, s
+  std::int64_t step = 0;                 ///< cycles since the start
+  double dt = 0;                         ///< of the last cycle, s; 0 before the first
+  double next_dt = 0;                    ///< that the timestep policy chose for the next one, s
+  std::vector<BondBreak> breaks{};       ///< bonds that broke, until somebody takes them; not in state files
+  std::optional<EnergyLedger> ledger{};  ///< kept only where somebody has begun it (measures/ledger.hpp)
 
   bool turns() const { return !model.bodies.spin.empty(); }
 };
+
+/// Adds bonds that broke on the way to the state, with its step, time and entry.
+inline void note_breaks(State& state, std::span<const BondBreak> broken) {
+  for (BondBreak found : broken) {
+    found.step = state.step;
+    found.time = state.time;
+    found.entry = state.settings.contacts[static_cast<std::size_t>(found.rule)].entry;
+    state.breaks.push_back(found);
+  }
+}
 
 }  // namespace eigengrain::assembly

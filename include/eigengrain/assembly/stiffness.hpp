@@ -1,6 +1,8 @@
 #pragma once
 
+#include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/contact/bonds/bond.hpp"
 #include "eigengrain/contact/element.hpp"
 
 #include <concepts>
@@ -22,8 +24,9 @@ enum class Listed { acting, all };
 /// the overlap depend on it.
 inline constexpr double typical_overlap = 1e-3;
 
-/// Calls visit(law, element) for every contact, group after group, in the order of the contacts. Cost
-/// O(contacts); nothing is allocated here.
+/// Calls visit(law, element) for every contact, group after group, in the order of the contacts. An end at a
+/// ball of a clump is one at the clump's holder, with the lever from the clump's centre. Cost O(contacts);
+/// nothing is allocated here.
 template <class Visit>
 void for_each_element(const Model& model, Listed which, const Visit& visit) {
   const contact::Placement placement = model.placement();
@@ -33,19 +36,31 @@ void for_each_element(const Model& model, Listed which, const Visit& visit) {
       // Of the facets near a ball only those that it can touch together, now.
       if (std::is_same_v<Kinematics, contact::BallFacet> && !group.pairs[c].is_contact()) continue;
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
+      // A bond beside a law that broke never acts again.
+      if constexpr (contact::BondLaw<typename std::decay_t<decltype(group)>::LawType>)
+        if (group.law.additive && !group.states[c].bonded()) continue;
       contact::ContactMotion motion = contact::at_rest(geometry);
       if (!group.law.acts(motion, group.states[c])) {
         if (which == Listed::acting) continue;
         motion.overlap = typical_overlap * motion.reduced_radius;
       }
-      visit(group.law, contact::ContactElement{
-                           .a = group.pairs[c].a,
-                           .b = Kinematics::second_is_body ? group.pairs[c].b : contact::no_body,
-                           .normal = geometry.normal,
-                           .lever_a = geometry.lever_a,
-                           .lever_b = geometry.lever_b,
-                           .stiffness = group.law.stiffness(motion, group.states[c]),
-                       });
+      contact::ContactElement element{
+          .a = group.pairs[c].a,
+          .b = Kinematics::second_is_body ? group.pairs[c].b : contact::no_body,
+          .normal = geometry.normal,
+          .lever_a = geometry.lever_a,
+          .lever_b = geometry.lever_b,
+          .stiffness = group.law.stiffness(motion, group.states[c]),
+      };
+      if (!model.bodies.clumps.empty()) {
+        element.lever_a += lever_of(model.bodies, element.a);
+        element.a = model.bodies.clumps.owner(element.a);
+        if constexpr (Kinematics::second_is_body) {
+          element.lever_b += lever_of(model.bodies, element.b);
+          element.b = model.bodies.clumps.owner(element.b);
+        }
+      }
+      visit(group.law, element);
     }
   });
 }

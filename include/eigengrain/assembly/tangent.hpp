@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/acting.hpp"
+#include "eigengrain/assembly/clump_tangent.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/contact/consistent_tangent.hpp"
@@ -11,7 +12,8 @@
 namespace eigengrain::assembly {
 
 /// Whatever takes consistent tangents one by one: bodies a and b (contact::no_body at a wall) and the 12×12
-/// on (u_a, θ_a, u_b, θ_b), of which only the first 6×6 means anything at a wall.
+/// on (u_a, θ_a, u_b, θ_b), of which only the first 6×6 means anything at a wall. A clump is its holder, and
+/// its θ is along its principal axes.
 template <class S>
 concept TangentSink = requires(S& sink, std::int32_t body, const Mat12& k) {
   sink.add(body, body, k);
@@ -22,17 +24,28 @@ concept TangentSink = requires(S& sink, std::int32_t body, const Mat12& k) {
 /// state and up to the size of the increment over the radius elsewhere. Nothing is stored in the contacts.
 template <TangentSink Sink>
 void assemble_tangent(const Model& model, const Trial& trial, Sink& sink) {
-  const contact::Placement placement = model.placement(trial.position);
+  const contact::Placement placement = model.placement(trial.position, trial.orientation);
   for_each_acting(model, placement, [&](const auto& group, std::size_t c, const auto& geometry) {
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
-    const contact::ContactMotion motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
-    typename Group::State discarded;
-    const contact::ContactForce force = group.law.evaluate(motion, group.states[c], discarded);
-    sink.add(pair.a, Kinematics::second_is_body ? pair.b : contact::no_body,
-             contact::consistent_tangent(geometry, Kinematics::curvature(placement, pair, geometry), force,
-                                         group.law.tangent(motion, group.states[c])));
+    const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+    const auto tangent = group.law.tangent(motion, group.states[c]);
+    const std::int32_t second = Kinematics::second_is_body ? pair.b : contact::no_body;
+    const auto force = [&] {
+      typename Group::State discarded;
+      return group.law.evaluate(motion, group.states[c], discarded);
+    };
+    const auto add = [&](const Mat12& k) {
+      if (model.bodies.clumps.empty()) return sink.add(pair.a, second, k);
+      const ClumpTangent own = clump_tangent(model.bodies, trial, pair.a, second, k, force().force);
+      sink.add(own.a, own.b, own.k);
+    };
+    if constexpr (contact::in_total_form<typename Group::LawType>)
+      add(tangent);
+    else
+      add(contact::consistent_tangent(geometry, Kinematics::curvature(placement, pair, geometry), force(),
+                                      tangent));
   });
 }
 

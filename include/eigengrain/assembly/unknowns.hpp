@@ -12,9 +12,11 @@ namespace eigengrain::assembly {
 
 /// Which unknowns a scene has. Every unknown is a vector, a block of three numbers.
 ///
-/// A body may have two, u and θ. Not numbered are
+/// A body may have two, u and θ. A clump has them in the row of its holder, and its θ along its principal
+/// axes, in which its inertia is diagonal. Not numbered are
 ///   - bodies that no acting contact touches: they are set aside and reported;
-///   - θ of a body whose contacts have no shear or rotational stiffness;
+///   - θ of a body whose contacts have no shear or rotational stiffness, but for clumps, which any force can
+///     turn;
 ///   - vectors whose three components are fixed.
 /// A vector with one or two fixed components is numbered, and those components are masked: their rows and
 /// columns are zero in every matrix and are kept out of spectra (see free_components).
@@ -25,7 +27,7 @@ class Unknowns {
 
   Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements);
 
-  /// Bodies of the model, with unknowns or without.
+  /// Rows of the model's bodies, with unknowns or without.
   std::int32_t bodies() const { return static_cast<std::int32_t>(block_.size()); }
   /// Vector unknowns.
   std::int32_t blocks() const { return static_cast<std::int32_t>(body_.size()); }
@@ -49,6 +51,16 @@ class Unknowns {
   /// Numbers that are free to move, in increasing order: what spectra are made of.
   std::vector<std::int32_t> free_components() const;
 
+  /// The axes of the θ of a body, as columns in space; null where these are the axes of space.
+  const Mat3* axes(std::int32_t body) const {
+    if (axes_of_.empty() || body == contact::no_body || axes_of_[body] == none) return nullptr;
+    return &axes_[axes_of_[body]];
+  }
+  /// Whether any body has axes of its own.
+  bool has_axes() const { return !axes_.empty(); }
+  /// A 6×6 on (u, θ) of two bodies, with θ along the axes of space, brought to the axes of the unknowns.
+  Mat6 in_own_axes(std::int32_t row_body, std::int32_t column_body, const Mat6& block) const;
+
   /// Blocks that are a θ.
   std::int32_t rotations() const { return rotations_; }
   /// Bodies that are not fixed entirely, but that no acting contact touches.
@@ -60,6 +72,8 @@ class Unknowns {
   std::vector<std::uint8_t> is_rotation_;
   std::vector<std::uint8_t> mask_;  ///< bits 0-2: fixed components
   std::vector<std::int32_t> set_aside_;
+  std::vector<std::int32_t> axes_of_;  ///< [bodies] index into axes_, or none; empty without clumps
+  std::vector<Mat3> axes_;             ///< [clumps]
   std::int32_t rotations_ = 0;
 };
 

@@ -10,6 +10,8 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
+/// A rotation as a unit quaternion. Without Eigen's alignment: four doubles among others.
+using Quat = Eigen::Quaternion<double, Eigen::DontAlign>;
 using Mat12 = Eigen::Matrix<double, 12, 12>;
 
 /// The matrix [r]× of the cross product: [r]× v = r × v.

@@ -32,7 +32,7 @@ NearestPoint nearest_point(const Vec3& x, const model::Facet& facet);
 ///   edge, corner  n from the centre to the nearest point of the line, or to the corner; U = r - distance
 /// R_b is taken from `centre`. side: 1 or -1, on which side of the facet the ball is.
 ContactGeometry ball_feature(const Vec3& x, double r, const model::Facet& facet, FacetFeature feature,
-                             int side, const Vec3& centre);
+                             int side, const Vec3& centre, double cut = to_contact_point);
 
 /// How n turns when the ball moves by u_a and the facet by u_b: dn = C (u_b - u_a) [3×3, 1/m]. Zero on a
 /// face, across the edge only on an edge, all across n at a corner.

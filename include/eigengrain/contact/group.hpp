@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/base/type_list.hpp"
+#include "eigengrain/contact/bonds.hpp"
 #include "eigengrain/contact/kinematics.hpp"
 #include "eigengrain/contact/laws.hpp"
 
@@ -39,11 +40,12 @@ Variants<First..., Second...> operator+(Variants<First...>, Variants<Second...>)
 template <class Kinematics, class... Laws>
 Variants<ContactGroup<Kinematics, Laws>...> groups_of(TypeList<Laws...>);
 template <class... Kinematics>
-auto all_groups(TypeList<Kinematics...>) -> decltype((groups_of<Kinematics>(LawTypes{}) + ...));
+auto all_groups(TypeList<Kinematics...>)
+    -> decltype((groups_of<Kinematics>(LawTypes{}) + ... + groups_of<BallBall>(BondTypes{})));
 
 }  // namespace detail
 
-/// A group of any kind: every kinematics with every law of the table.
+/// A group of any kind: every kinematics with every law of the table, and every bond between balls.
 using AnyGroup = decltype(detail::all_groups(KinematicsTypes{}))::type;
 
 /// All contacts of a model.

@@ -54,6 +54,8 @@ struct Placement {
   const model::Facets* facets = nullptr;  ///< of all surfaces
   std::span<const SurfacePlace> surfaces{};
   std::span<const SurfacePlace> middle_surfaces{};  ///< in the middle of the step; empty where none moves
+  double lever_cut = to_contact_point;              ///< of the overlap, from the levers
+  std::span<const Quat> orientation{};  ///< [bodies] or empty; a trial orientation where position is one
 };
 
 /// Side a is a ball, side b another ball (or an image of the same one).
@@ -65,7 +67,7 @@ struct BallBall {
   static Mat3 curvature(const Placement& /*placement*/, const Pair& /*pair*/,
                         const ContactGeometry& geometry) {
     const Vec3& n = geometry.normal;
-    return (Mat3::Identity() - n * n.transpose()) / (geometry.lever_a - geometry.lever_b).dot(n);
+    return (Mat3::Identity() - n * n.transpose()) / geometry.branch().dot(n);
   }
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
@@ -77,7 +79,8 @@ struct BallBall {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto b = static_cast<std::size_t>(pair.b);
     return ball_ball(placement.position[a] - back_a, placement.radius[a],
-                     placement.position[b] + placement.cell.shift(pair.image) - back_b, placement.radius[b]);
+                     placement.position[b] + placement.cell.shift(pair.image) - back_b, placement.radius[b],
+                     placement.lever_cut);
   }
 };
 
@@ -93,14 +96,16 @@ struct BallPlane {
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
     const auto a = static_cast<std::size_t>(pair.a);
-    return ball_plane(placement.position[a], placement.radius[a], placement.walls[pair.b]);
+    return ball_plane(placement.position[a], placement.radius[a], placement.walls[pair.b],
+                      placement.lever_cut);
   }
   /// The geometry in the middle of the step: a wall that turns is not just set back.
   static ContactGeometry geometry_before(const Placement& placement, const Pair& pair, const Vec3& back_a,
                                          const Vec3& /*back_b*/) {
     const auto a = static_cast<std::size_t>(pair.a);
     const auto walls = placement.middle_walls.empty() ? placement.walls : placement.middle_walls;
-    return ball_plane(placement.position[a] - back_a, placement.radius[a], walls[pair.b]);
+    return ball_plane(placement.position[a] - back_a, placement.radius[a], walls[pair.b],
+                      placement.lever_cut);
   }
   /// Index of the wall that side b belongs to.
   static std::int32_t wall(const Placement& /*placement*/, const Pair& pair) { return pair.b; }
@@ -157,9 +162,9 @@ struct BallFacet {
   static ContactGeometry geometry_of(const Placement& placement, std::span<const SurfacePlace> places,
                                      const Pair& pair, const Vec3& back) {
     const SurfacePlace& place = place_of(placement, places, pair);
-    ContactGeometry result = ball_feature(local_centre(placement, places, pair, back),
-                                          placement.radius[pair.a], facet_of(placement, pair),
-                                          feature(placement, pair), pair.side < 0 ? -1 : 1, place.start);
+    ContactGeometry result = ball_feature(
+        local_centre(placement, places, pair, back), placement.radius[pair.a], facet_of(placement, pair),
+        feature(placement, pair), pair.side < 0 ? -1 : 1, place.start, placement.lever_cut);
     if (!pair.is_contact()) result.overlap = std::min(result.overlap, 0.0);
     result.normal = place.turned(result.normal);
     result.lever_a = place.turned(result.lever_a);
@@ -210,12 +215,23 @@ ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, cons
   return motion;
 }
 
+/// The pose of a contact between two bodies that have orientations.
+inline ContactPose pose_of(const Placement& placement, const Pair& pair, const ContactGeometry& geometry) {
+  return {.lever_a = geometry.lever_a,
+          .lever_b = geometry.lever_b,
+          .orientation_a = placement.orientation[static_cast<std::size_t>(pair.a)],
+          .orientation_b = placement.orientation[static_cast<std::size_t>(pair.b)]};
+}
+
 /// The motion of a contact as its law wants it.
 template <class Kinematics, class Law>
-ContactMotion motion_for(const Law& law, const Placement& placement, const Pair& pair,
+MotionOf<Law> motion_for(const Law& law, const Placement& placement, const Pair& pair,
                          const ContactGeometry& geometry, const SideMotion& a, const SideMotion& b) {
-  return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
-                        : contact_motion(geometry, a, b);
+  if constexpr (in_total_form<Law>)
+    return pose_of(placement, pair, geometry);
+  else
+    return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
+                          : contact_motion(geometry, a, b);
 }
 
 /// m_1 m_2/(m_1 + m_2) of the sides, at a wall the ball's mass, kg.
@@ -250,12 +266,28 @@ inline ContactMotion at_rest(const ContactGeometry& geometry) {
   return contact_motion(geometry, {}, {});
 }
 
-/// The force of a contact as it stands: that of its springs, and that of its dashpots in the step that led to
-/// its state.
+/// The same as the law wants it.
 template <class Law>
-ContactForce force_now(const Law& law, const ContactGeometry& geometry, const typename Law::State& state) {
+MotionOf<Law> at_rest_for(const Placement& placement, const Pair& pair, const ContactGeometry& geometry) {
+  if constexpr (in_total_form<Law>)
+    return pose_of(placement, pair, geometry);
+  else
+    return at_rest(geometry);
+}
+
+/// The force of the springs of a contact as it stands.
+template <class Law>
+ContactForce spring_force(const Law& law, const Placement& placement, const Pair& pair,
+                          const ContactGeometry& geometry, const typename Law::State& state) {
   typename Law::State discarded;
-  ContactForce force = law.evaluate(at_rest(geometry), state, discarded);
+  return law.evaluate(at_rest_for<Law>(placement, pair, geometry), state, discarded);
+}
+
+/// The same with that of its dashpots in the step that led to its state.
+template <class Law>
+ContactForce force_now(const Law& law, const Placement& placement, const Pair& pair,
+                       const ContactGeometry& geometry, const typename Law::State& state) {
+  ContactForce force = spring_force(law, placement, pair, geometry, state);
   if constexpr (asks_rate<Law>) force.force += state.viscous;
   return force;
 }

@@ -36,6 +36,15 @@ struct ContactMotion {
   double reduced_mass = 0;       ///< m_1 m_2/(m_1 + m_2), at a wall the ball's, kg
 };
 
+/// What a law in total form knows instead: where its sides are and how they are turned, not how they came
+/// there. A law asks for it by `using Motion = ContactPose`, and the scene then has orientations.
+struct ContactPose {
+  Vec3 lever_a = Vec3::Zero();  ///< R_a now, m
+  Vec3 lever_b = Vec3::Zero();  ///< R_b now, m; x_b - x_a = R_a - R_b
+  Quat orientation_a = Quat::Identity();
+  Quat orientation_b = Quat::Identity();
+};
+
 /// What acts at the contact point, of the first side on the second.
 struct ContactForce {
   Vec3 force = Vec3::Zero();   ///< N
@@ -114,7 +123,7 @@ constexpr bool are_defaults(std::span<const double> values, std::span<const Para
 struct StateField {
   std::string_view name;
   std::string_view unit;  ///< SI; empty for a pure number
-  int components = 1;     ///< 1 or 3
+  int components = 1;     ///< 1, 3, or 4 for a quaternion (x, y, z, w)
 };
 
 /// Numbers in a state with these parts.
@@ -131,10 +140,37 @@ inline constexpr bool asks_rate = requires {
   requires L::asks_rate;
 };
 
+namespace detail {
+template <class L>
+struct MotionSelector {
+  using type = ContactMotion;
+};
+template <class L>
+requires requires {
+  typename L::Motion;
+}
+struct MotionSelector<L> {
+  using type = typename L::Motion;
+};
+}  // namespace detail
+
+/// What a law is evaluated for: increments, or the pose of its sides.
+template <class L>
+using MotionOf = typename detail::MotionSelector<L>::type;
+
+template <class L>
+inline constexpr bool in_total_form = std::is_same_v<MotionOf<L>, ContactPose>;
+
+/// What `tangent` gives: D at fixed n, from which contact/consistent_tangent.hpp makes the whole; in total
+/// form the whole itself, -∂(F_a, M_a, F_b, M_b)/∂(u_a, θ_a, u_b, θ_b).
+template <class L>
+using TangentOf = std::conditional_t<in_total_form<L>, Mat12, ContactTangent>;
+
 /// A law: a state that belongs to each contact (may be empty) and pure functions of motion and old state.
 template <class L>
-concept ContactLaw = requires(const L& law, const ContactMotion& motion, const typename L::State& state,
-                              typename L::State& next, std::span<const double> values) {
+concept ContactLaw = requires(const L& law, const ContactMotion& motion, const MotionOf<L>& full,
+                              const typename L::State& state, typename L::State& next,
+                              std::span<const double> values) {
   { L::name } -> std::convertible_to<std::string_view>;
   { L::description } -> std::convertible_to<std::string_view>;
   { L::parameters } -> std::convertible_to<std::span<const ParameterDescription>>;
@@ -152,11 +188,11 @@ concept ContactLaw = requires(const L& law, const ContactMotion& motion, const t
   /// tangent mean nothing.
   { law.acts(motion, state) } -> std::same_as<bool>;
   /// Force after the motion; `next` receives the state that a commit would store.
-  { law.evaluate(motion, state, next) } -> std::same_as<ContactForce>;
+  { law.evaluate(full, state, next) } -> std::same_as<ContactForce>;
   { law.stiffness(motion, state) } -> std::same_as<ContactStiffness>;
-  { law.tangent(motion, state) } -> std::same_as<ContactTangent>;
+  { law.tangent(full, state) } -> std::same_as<TangentOf<L>>;
   /// Elastic energy stored after the motion, J.
-  { law.energy(motion, state) } -> std::same_as<double>;
+  { law.energy(full, state) } -> std::same_as<double>;
   /// Whether the increments are wanted with the geometry of the middle of the step (contact/kinematics.hpp).
   { law.mid_step() } -> std::same_as<bool>;
   /// Whether any contact of the law can ever have shear or rotational stiffness.

@@ -9,7 +9,7 @@
 
 namespace eigengrain::contact {
 
-/// A law as a user meets it in a scene file.
+/// A law, or a kind of bond, as a user meets it in a scene file.
 struct LawDescription {
   std::string_view name;
   std::string_view description;
@@ -24,5 +24,9 @@ const std::vector<LawDescription>& law_descriptions();
 
 /// The law of that name, or nullptr.
 const LawDescription* find_law(std::string_view name);
+
+/// The same of the kinds of bonds (bonds.hpp).
+const std::vector<LawDescription>& bond_descriptions();
+const LawDescription* find_bond(std::string_view name);
 
 }  // namespace eigengrain::contact

@@ -18,7 +18,7 @@ double damped_timestep(double undamped_dt, double local_damping);
 /// PFC3D's estimate (eq. 1.31): min over bodies and degrees of freedom of √(m/k), k the sum over the body's
 /// contacts of the diagonal terms of their stiffness matrices; with dashpots, of k/F(β)², F(β) = √(1 + β²) -
 /// β (eq. 1.35). Depends on the frame and is NOT a bound: up to 22% above the true critical step for two
-/// spheres, up to √3 in principle. s.
+/// spheres, more for clumps (rotations along their principal axes), up to √3 in principle. s.
 double diagonal_estimate(const assembly::LinearSystem& system);
 
 /// A proven lower bound of the true critical step, for any positive weights d of the bodies (docs/theory.md):

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
+#include <vector>
 
 /// The explicit cycle: leapfrog (PFC3D eqs. 1.25-1.27) with local damping (eq. 1.47).
 namespace eigengrain::cycle {
@@ -26,14 +28,18 @@ assembly::State start(const model::Scene& scene);
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
+///   clumps              L₊ = L₋ + ½(Δt_old + Δt) M with damping along the principal axes, then the free
+///                       rotation with L₊ (cycle/free_rotation.hpp)
+///   orientation         q <- exp(v₊ Δt of the spin) q, where the scene has orientations
 ///   walls               by the velocity that is given for the middle of the step, servo walls by their load
-///   at t contacts            the list, where a body or wall has moved by half the skin; forces from the new
-///   positions,
-///                       the increments v₊ Δt and the old history, which is committed at once
+///                       at t
+///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
+///                       positions, the increments v₊ Δt and the old history, which is committed at once
 ///
 /// A state that starts has Δt_old = 0: its velocity v₀ at t = 0 becomes v₀ + ½Δt a₀ at the half step, which
-/// keeps the scheme at second order. The same program gives the same bits on any number of threads, and from
-/// a state that was saved and read again.
+/// keeps the scheme at second order. A state with an energy ledger keeps it; without, nothing of it is
+/// computed. The same program gives the same bits on any number of threads, and from a state that was saved
+/// and read again.
 class Cycle {
  public:
   /// Throws InputError where the policy finds no step.
@@ -45,12 +51,15 @@ class Cycle {
   }
 
   const assembly::State& state() const { return state_; }
+  /// Bonds that broke since this was last asked, in their order; the state forgets them.
+  std::vector<assembly::BondBreak> take_breaks() { return std::exchange(state_.breaks, {}); }
   /// The state, moved out; the cycle is over.
   assembly::State release() { return std::move(state_); }
 
  private:
   /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
   /// made, m².
+  template <class Work>
   double move(double duration, double dt);
   void list_anew();
   void choose_timestep();

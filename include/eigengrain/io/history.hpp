@@ -1,6 +1,8 @@
 #pragma once
 
 #include "eigengrain/assembly/state.hpp"
+#include "eigengrain/measures/ledger.hpp"
+#include "eigengrain/measures/measure.hpp"
 
 #include <cstdint>
 #include <cstdio>
@@ -31,6 +33,8 @@ struct HistoryValues {
   std::vector<Vec3> wall_forces{};     ///< [walls] N
   std::vector<Vec3> wall_moments{};    ///< [walls] about their centres, N m
   std::vector<Vec3> wall_positions{};  ///< [walls] their centres, m
+  measures::Ledger ledger{};
+  std::vector<measures::Measure> regions{};  ///< [regions of the history]
 };
 
 /// A table that a run writes (docs/scene-schema.md, `histories`): CSV with one line of names and units,

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace eigengrain::io {
 
@@ -19,5 +20,9 @@ model::Scene read_scene(const std::filesystem::path& file, std::span<const std::
 /// The same for a text. Paths in it are relative to `folder`; mistakes name the text `name`.
 model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path& folder,
                              std::string_view name = "scene", std::span<const std::string> overrides = {});
+
+/// Regions of the command line, each the keys of an entry of `measures`, such as "box: {min: [0, 0, 0], max:
+/// [1, 1, 1]}". Throws InputError with every mistake, which names "--region" and the text.
+std::vector<model::Region> read_regions(std::span<const std::string> entries);
 
 }  // namespace eigengrain::io

@@ -49,7 +49,7 @@ struct KeyDescription {
   std::string example{};             ///< a valid value
   std::string description{};
   std::string from_materials{};  ///< keys of materials that say it where it is left out
-  std::string law{};             ///< the contact law whose parameter it is; empty for all other keys
+  std::string law{};  ///< the contact law, or kind of bond, whose parameter it is; empty for all other keys
 
   /// The last part of the path.
   std::string_view name() const;
@@ -60,11 +60,15 @@ struct KeyDescription {
 /// Every key, section after section; parameters of laws come from contact::law_descriptions().
 const std::vector<KeyDescription>& scene_schema();
 
-/// The keys of one section; of a contact, those of the law given, or of every law if it is empty.
+/// The keys of one section; of a contact or bond, those of the law or kind given, or of every one if it is
+/// empty.
 std::vector<const KeyDescription*> section_keys(std::string_view section, std::string_view law = {});
 
 /// Names of the contact laws that a scene may ask for, "none" included.
 std::vector<std::string> law_names();
+
+/// Kinds of bonds that a scene may ask for.
+std::vector<std::string> bond_names();
 
 /// The text of docs/scene-schema.md.
 std::string schema_markdown();

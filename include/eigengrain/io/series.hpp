@@ -13,8 +13,10 @@ namespace eigengrain::io {
 /// Frames of a run for ParaView: FOLDER/STEM.pvd, which lists FOLDER/STEM_series/STEM_<step>.vtu.
 ///
 /// A frame has a point a ball, in the order of identity, so that frames can be compared ball by ball: radius,
-/// identity, velocity, spin (where something turns), force (of all contacts, N) and contacts (number of those
-/// that act); and the fields TimeValue (s) and Step. All numbers are the run's own, to the bit.
+/// identity, clump (where there are any; -1: none), velocity, spin (where something turns), force (of all
+/// contacts, N) and contacts (number of those that act), and stress if it is asked for (mean over the ball's
+/// own volume, Pa, nine numbers, row by row: measures/measure.hpp); and the fields TimeValue (s) and Step.
+/// All numbers are the run's own, to the bit.
 ///
 /// Each file is there in full or not at all, and the list names only frames that are there: a run may be
 /// killed at any time.
@@ -26,7 +28,8 @@ class Series {
   enum class Of { balls, surfaces };
 
   /// Nothing is written before the first frame, which replaces the list of an earlier run.
-  Series(std::filesystem::path folder, std::string stem, Of what = Of::balls);
+  /// stress  whether frames of balls have their stress
+  Series(std::filesystem::path folder, std::string stem, Of what = Of::balls, bool stress = false);
 
   /// At a restart from this step, once, before the first frame: takes over the list that is there, without
   /// the frames after the step. That of the step itself stays. Throws InputError where the list is not one
@@ -56,6 +59,7 @@ class Series {
   std::filesystem::path folder_;
   std::string stem_;
   Of what_;
+  bool stress_ = false;
   std::vector<Frame> frames_;
 };
 

@@ -23,7 +23,7 @@ inline constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 Mat3 mean_stress(const Window& window, const assembly::Model& model, std::span<const ActingContact> contacts);
 
 /// Mean stress of each body over its own volume [bodies], Pa: (1/V_i) Σ f ⊗ R, f the force of a contact on
-/// the body and R its lever. Σ V_i σ_i = -Σ F ⊗ ℓ.
+/// the body and R its lever. Σ V_i σ_i = -Σ F ⊗ ℓ. Balls of a clump have the stress of the clump.
 std::vector<Mat3> body_stresses(const assembly::Model& model);
 
 /// Velocity gradient L of the best fit v = v̄ + L (x - x̄) to the bodies with their centres in the window, by
@@ -32,11 +32,12 @@ std::vector<Mat3> body_stresses(const assembly::Model& model);
 std::optional<Mat3> velocity_gradient(const Window& window, const model::Bodies& bodies);
 
 /// 1 - (volume of balls in the window)/V, with exact partial volumes; where balls overlap each counts in
-/// full.
+/// full, but those of one clump, whose common volume counts once (in the parts of it that a window cuts, in
+/// the mean over its balls).
 double porosity(const Window& window, const model::Bodies& bodies);
 
-/// Means over bodies with their centres in a window and over the contacts at them, at walls too. A contact of
-/// two bodies counts at both.
+/// Means over bodies (balls, and clumps as a whole) with their centres in a window and over the contacts at
+/// them, at walls too. A contact of two bodies counts at both.
 struct Fabric {
   std::int64_t bodies = 0;
   std::int64_t rattlers = 0;

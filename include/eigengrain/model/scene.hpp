@@ -3,6 +3,7 @@
 #include "eigengrain/base/vec.hpp"
 #include "eigengrain/model/bodies.hpp"
 #include "eigengrain/model/material.hpp"
+#include "eigengrain/model/region.hpp"
 #include "eigengrain/model/surface.hpp"
 #include "eigengrain/model/surroundings.hpp"
 #include "eigengrain/model/wall_motion.hpp"
@@ -15,6 +16,13 @@
 /// A scene is data: what the user asked for, in SI units, checked but not yet built.
 namespace eigengrain::model {
 
+/// Bonds that are made between the balls of a contact rule when a scene starts.
+struct BondRule {
+  std::string kind;                ///< a name of the table of bonds (contact/bonds.hpp)
+  std::vector<double> parameters;  ///< in the order of the kind's own description; flags as 0 or 1
+  double gap = 0;                  ///< surfaces that are no more than this apart are bonded, m
+};
+
 /// The law between two materials. An index of any_material matches every material.
 struct ContactRule {
   static constexpr std::int32_t any_material = -1;
@@ -25,6 +33,7 @@ struct ContactRule {
   /// In the order of the law's own description; flags as 0 or 1. Those at the end that have defaults may be
   /// left out.
   std::vector<double> parameters;
+  std::optional<BondRule> bond{};
   std::int32_t entry = 0;  ///< of the scene file's `contacts`, for reports
 
   bool matches(std::int32_t a, std::int32_t b) const {
@@ -60,12 +69,15 @@ struct History {
   bool wall_moments = false;        ///< moment on each wall about its centre
   bool wall_positions = false;      ///< centre of each wall
   std::vector<std::int64_t> balls;  ///< identities: position, velocity, spin
+  std::vector<Region> measures{};   ///< averages over each of these
+  bool ledger = false;              ///< of energy
 };
 
 /// What else a run writes; 0: nothing of it.
 struct OutputChoice {
   std::int64_t checkpoint_every = 10000;  ///< steps between states
   std::int64_t series_every = 0;          ///< steps between frames for ParaView
+  bool series_stress = false;             ///< frames have the mean stress of each body
 };
 
 struct Scene {
@@ -79,8 +91,10 @@ struct Scene {
   PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
   double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47
+  bool full_levers = false;     ///< levers of balls end at their surface, not at the contact point
   TimestepChoice timestep;
   RunChoice run;
+  std::vector<Region> measures;
   std::vector<History> histories;
   OutputChoice outputs;
   std::string document;  ///< what the file and the overrides said, without the balls, as a scene document

@@ -81,6 +81,14 @@ class Damped : public Base {
   ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
     return respond(motion, old, next).force;
   }
+  /// Of the dashpots: the trapezoidal work of their forces, each half of the way with that at its own end.
+  Dissipation dissipation(const ContactMotion& motion, const State& old, const State& next) const {
+    Dissipation result = Base::dissipation(motion, old, next);
+    Vec3 force = next.viscous;
+    if (old.formed()) force += carry_vector(old.viscous, old.normal, motion.normal, motion.spin);
+    result.viscous = -0.5 * force.dot(motion.displacement);
+    return result;
+  }
   DampingRatios damping() const { return {.normal = dashpots_.beta_n, .shear = dashpots_.beta_s}; }
 
   static constexpr std::size_t own_parameters = Base::own_parameters + Dashpots::parameters.size();

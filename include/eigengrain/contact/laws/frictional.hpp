@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/contact/dissipation.hpp"
 #include "eigengrain/contact/law.hpp"
 #include "eigengrain/contact/shear_transport.hpp"
 
@@ -39,9 +40,9 @@ struct ShearOptions {
        .kind = ParameterDescription::Kind::flag,
        .unit = "",
        .default_value = 0,
-       .description =
-           "project the shear force onto the new contact plane, as LAMMPS's gran/hooke/history does, in "
-           "place of turning it"},
+       .description = "project the shear force onto the new contact plane, in place of turning it, and let "
+                      "it begin with "
+                      "all of the step in which the contact forms, as LAMMPS's gran/hooke/history does"},
   }};
   /// values: of these parameters, and perhaps of more behind them.
   static ShearOptions from_values(std::span<const double> values) {
@@ -72,11 +73,13 @@ struct Response {
 ///   slip                 |F_s| <= μ F_n
 ///   energy               normal energy + ½ |F_s|²/k_s
 ///
-/// F_s starts at zero when the contact forms. k_s counts only where friction is positive.
+/// F_s starts at zero when the contact forms (`projected`: with the increment of that step). k_s counts only
+/// where friction is positive.
 ///
 /// Springs say what F_n, k_s and the energy are (laws/linear.hpp, hertz.hpp, hysteretic.hpp): Params with
 /// `friction` and `shear` (ShearOptions); Memory, what they remember beside the shear force;
-/// and the functions used here, of the motion and the old memory.
+/// and the functions used here, of the motion and the old memory. `lost(memory)`, where they have it, is what
+/// the springs along n have turned into heat since the contact formed.
 template <class Springs>
 class Frictional {
  public:
@@ -172,6 +175,36 @@ class Frictional {
     return normal + 0.5 * next.shear.squaredNorm() / springs_.shear(motion, old.memory).stiffness;
   }
 
+  /// Of friction, with C = kept · carried(F_s,old), T the trial shear force and F_s,new:
+  ///
+  ///   ½ (C + F_s,new)·(T - F_s,new)/k_s      the mean shear force on the way that slips
+  ///
+  /// and, where k_s follows the overlap, what the shear spring loses as that changes. Where the contact opens
+  /// F_s,new is zero, and what was stored is lost.
+  Dissipation dissipation(const ContactMotion& motion, const State& old, const State& next) const {
+    Dissipation result;
+    if constexpr (requires { springs_.lost(next.memory); })
+      if (next.formed()) result.hysteresis = springs_.lost(next.memory) - springs_.lost(old.memory);
+    if (!springs_.has_shear()) return result;
+    const Vec3 before = old.formed() ? carried(motion, old) : Vec3(Vec3::Zero());
+    const Vec3 way = across(motion);
+    if (!acts(motion, old)) {
+      if (!before.isZero(0))
+        result.slip = 0.5 * before.dot(before / springs_.old_shear_stiffness(motion, old.memory) - way);
+      return result;
+    }
+    const ShearSprings shear = springs_.shear(motion, old.memory);
+    const Vec3 trial = trial_shear(motion, old);
+    result.slip = 0.5 * (shear.kept * before + next.shear).dot(trial - next.shear) / shear.stiffness;
+    if constexpr (Springs::shear_follows_overlap)
+      if (!before.isZero(0)) {
+        const double then = springs_.old_shear_stiffness(motion, old.memory);
+        result.slip += 0.5 * before.squaredNorm() * (1 / then - shear.kept * shear.kept / shear.stiffness) -
+                       0.5 * (1 - shear.kept) * before.dot(way);
+      }
+    return result;
+  }
+
   // What scene files say.
 
   static constexpr std::string_view name = Springs::name;
@@ -212,8 +245,10 @@ class Frictional {
 
   /// Shear force before the slip check. Zero in the step in which the contact forms.
   Vec3 trial_shear(const ContactMotion& motion, const State& old) const {
-    if (!springs_.has_shear() || !old.formed()) return Vec3::Zero();
+    if (!springs_.has_shear()) return Vec3::Zero();
     const ShearSprings shear = springs_.shear(motion, old.memory);
+    if (!old.formed())
+      return transport_ == Transport::projected ? Vec3(-shear.stiffness * across(motion)) : Vec3::Zero();
     return shear.kept * carried(motion, old) - shear.stiffness * across(motion);
   }
   /// Its derivative with respect to U.

@@ -58,6 +58,7 @@ class HertzSprings {
     return 2.0 / 3.0 * motion.overlap * tangent(motion, old);
   }
   double tangent(const ContactMotion& motion, Memory /*old*/) const { return 2 * young_ * root(motion); }
+  static constexpr bool shear_follows_overlap = true;
   ShearSprings shear(const ContactMotion& motion, Memory old) const {
     ShearSprings springs{.stiffness = 8 * shear_ * root(motion)};
     springs.stiffness_slope = springs.stiffness / (2 * motion.overlap);
@@ -66,6 +67,10 @@ class HertzSprings {
       springs.kept_slope = springs.kept / (2 * motion.overlap);
     }
     return springs;
+  }
+  /// k_s at the overlap of the committed state.
+  double old_shear_stiffness(const ContactMotion& motion, Memory old) const {
+    return 8 * shear_ * std::sqrt(motion.reduced_radius * old.overlap);
   }
   ContactStiffness stiffness(const ContactMotion& motion, Memory old) const {
     return {.normal = tangent(motion, old), .shear = 8 * shear_ * root(motion)};

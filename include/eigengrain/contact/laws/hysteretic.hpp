@@ -48,13 +48,19 @@ class HystereticSprings {
     if (motion.overlap >= old.largest) return loading_;
     return force(motion, old) > 0 ? unloading_ : 0.0;
   }
+  static constexpr bool shear_follows_overlap = false;
   ShearSprings shear(const ContactMotion& /*motion*/, Memory /*old*/) const { return {.stiffness = ks_}; }
+  double old_shear_stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const { return ks_; }
   ContactStiffness stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const {
     return {.normal = unloading_, .shear = ks_};
   }
   double energy(const ContactMotion& motion, Memory old) const {
     const double f = force(motion, old);
     return 0.5 * f * f / unloading_;
+  }
+  /// Of the work of loading ½ k_1 U_m² the part that is not stored, ½ (k_1 U_m)²/k_2.
+  double lost(Memory memory) const {
+    return 0.5 * loading_ * (1 - loading_ / unloading_) * memory.largest * memory.largest;
   }
   Memory remembered(const ContactMotion& motion, Memory old) const {
     return {std::max(motion.overlap, old.largest)};

@@ -49,7 +49,9 @@ class LinearSprings {
 
   double force(const ContactMotion& motion, Memory /*old*/) const { return kn_ * motion.overlap; }
   double tangent(const ContactMotion& /*motion*/, Memory /*old*/) const { return kn_; }
+  static constexpr bool shear_follows_overlap = false;
   ShearSprings shear(const ContactMotion& /*motion*/, Memory /*old*/) const { return {.stiffness = ks_}; }
+  double old_shear_stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const { return ks_; }
   ContactStiffness stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const {
     return {.normal = kn_, .shear = ks_};
   }

@@ -92,6 +92,15 @@ class Rolling : public Base {
     result.coupling += spring_.friction * motion.reduced_radius * kn * m * n.transpose();
     return result;
   }
+  /// Of the moment, as Frictional has it of the shear force.
+  Dissipation dissipation(const ContactMotion& motion, const State& old, const State& next) const {
+    Dissipation result = Base::dissipation(motion, old, next);
+    if (spring_.kr <= 0 || !old.formed()) return result;
+    const Vec3 trial = trial_moment(motion, old);
+    const Vec3 before = trial + spring_.kr * motion.rotation;
+    result.rolling = 0.5 * (before + next.moment).dot(trial - next.moment) / spring_.kr;
+    return result;
+  }
   double energy(const ContactMotion& motion, const State& old) const {
     const double base = Base::energy(motion, old);
     if (spring_.kr <= 0) return base;

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "eigengrain/assembly/state.hpp"
+
+namespace eigengrain::cycle {
+
+/// Kick of all clumps for a duration by the forces of their balls, and drift for dt (s): velocity and angular
+/// momentum, then centre and orientation, then the places of the balls, whose velocity and spin become the
+/// exact displacement and rotation of the step over dt. Forces are summed ball by ball, in the order of the
+/// scene. Cost O(balls of clumps).
+void move_clumps(assembly::State& state, double duration, double dt);
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "eigengrain/assembly/state.hpp"
+#include "eigengrain/contact/law.hpp"
+#include "eigengrain/model/scene.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <span>
+
+namespace eigengrain::cycle {
+
+/// What a head-on contact of a ball with a wall, or a ball that is far larger, is like when it has stored an
+/// energy (or at the typical overlap, where that stores more).
+struct HeadOn {
+  contact::ContactStiffness stiffness;
+  contact::DampingRatios beta;
+};
+
+/// radius in m, energy in J.
+HeadOn head_on(const model::ContactRule& rule, std::int32_t index, double radius, double energy = 0);
+
+/// The steps that the first contact of a body allows, s.
+struct FirstContact {
+  /// √(m/k), √(I/k) of the degrees of freedom apart, k over F(β)² of dashpots
+  double estimate = std::numeric_limits<double>::infinity();
+  /// of the body's block, local damping and dashpots included: proven
+  double bound = std::numeric_limits<double>::infinity();
+};
+
+/// Of bodies (rows; holders of clumps) that touch nothing yet, for any head-on contact that the rules of the
+/// scene allow; of clumps, wherever on their surface it may be.
+FirstContact first_contact(const assembly::State& state, std::span<const std::int32_t> bodies);
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "eigengrain/assembly/ledger.hpp"
+#include "eigengrain/assembly/local_damping.hpp"
+#include "eigengrain/base/vec.hpp"
+
+#include <cstdint>
+
+namespace eigengrain::cycle {
+
+/// Where nobody keeps an energy ledger.
+struct NoWork {
+  static constexpr bool counts = false;
+  NoWork(double /*behind*/, double /*ahead*/) {}
+  void free(double /*damping*/, double /*before*/, double /*after*/) {}
+  void held(double /*force*/, double /*velocity*/) {}
+  void gravity(const Vec3& /*weight*/, const Vec3& /*velocity*/) {}
+};
+
+/// The work that a kick decides: half of it over the step behind and half over the step ahead, the way of
+/// each being its velocity times its length (measures/ledger.hpp).
+struct KickWork {
+  static constexpr bool counts = true;
+  KickWork(double step_behind, double step_ahead) : behind(step_behind), ahead(step_ahead) {}
+  void free(double damping, double before, double after) {
+    sum.damping -= 0.5 * damping * (behind * before + ahead * after);
+  }
+  void held(double force, double velocity) { sum.prescribed -= 0.5 * force * (behind + ahead) * velocity; }
+  void gravity(const Vec3& weight, const Vec3& velocity) { sum.gravity += ahead * weight.dot(velocity); }
+
+  double behind;  ///< s
+  double ahead;   ///< s
+  assembly::EnergyIntegrals sum{};
+};
+
+/// Changes the free components of a velocity by the damped force of its body.
+template <class Work>
+void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, double damping,
+          std::uint8_t fixed, Work& work) {
+  for (int k = 0; k < 3; ++k) {
+    if (((fixed >> k) & 1) != 0) {
+      work.held(force[k], velocity[k]);
+      continue;
+    }
+    const double before = velocity[k];
+    const double resistance = assembly::local_damping_force(force[k], before, damping);
+    velocity[k] += duration * (force[k] + resistance) / inertia;
+    work.free(resistance, before, velocity[k]);
+  }
+}
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,103 @@
+#include "scene_keys.hpp"
+
+namespace eigengrain::io {
+
+using enum KeyKind;
+
+std::vector<KeyDescription> clump_keys() {
+  return {
+      {.path = "clumps",
+       .kind = section_list,
+       .example = "[{balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [5 mm, 0, 0], radius: 5 mm}], "
+                  "material: grain, instances: [{position: [0.1, 0.1, 0.3]}]}]",
+       .description =
+           "each entry is a sort of rigid body made of several balls; these are numbered behind all "
+           "others, and never touch those of their own body"},
+      {.path = "clumps[].balls",
+       .kind = section_list,
+       .required = true,
+       .example = "[{at: [0, 0, 0], radius: 5 mm}, {at: [5 mm, 0, 0], radius: 5 mm}]",
+       .description = "the shape, in a frame of its own; balls may overlap or be apart"},
+      {.path = "clumps[].balls[].at",
+       .kind = vector,
+       .unit = "m",
+       .required = true,
+       .example = "[5 mm, 0, 0]",
+       .description = "centre of a ball"},
+      {.path = "clumps[].balls[].radius",
+       .kind = quantity,
+       .unit = "m",
+       .range = positive_range,
+       .required = true,
+       .example = "5 mm",
+       .description = "of a ball"},
+      {.path = "clumps[].material",
+       .kind = text,
+       .required = true,
+       .example = "grain",
+       .description = "a name out of `materials`"},
+      {.path = "clumps[].mass",
+       .kind = quantity,
+       .unit = "kg",
+       .range = positive_range,
+       .example = "1.5 g",
+       .description = "absent: that of the union of the balls, which counts overlaps once, at the density of "
+                      "the material; alone: of a homogeneous body of that shape"},
+      {.path = "clumps[].centre",
+       .kind = vector,
+       .unit = "m",
+       .example = "[2.5 mm, 0, 0]",
+       .description = "centre of mass, together with `mass` and `inertia`; absent: that of the union"},
+      {.path = "clumps[].inertia",
+       .kind = vector,
+       .unit = "kg m2",
+       .range = positive_range,
+       .example = "[2e-8, 4e-8, 4e-8]",
+       .description =
+           "moments about the centre, together with `mass` and `centre`; the axes of the frame are "
+           "then the principal ones; absent: those of the union"},
+      {.path = "clumps[].instances",
+       .kind = section_list,
+       .required = true,
+       .example = "[{position: [0.1, 0.1, 0.3]}]",
+       .description = "the bodies of this sort"},
+      {.path = "clumps[].instances[].position",
+       .kind = vector,
+       .unit = "m",
+       .required = true,
+       .example = "[0.1, 0.1, 0.3]",
+       .description = "of the centre of mass; wrapped into the cell where that is periodic"},
+      {.path = "clumps[].instances[].axis",
+       .kind = vector,
+       .fallback = "[0, 0, 1]",
+       .example = "[1, 1, 0]",
+       .description = "about which the frame is turned, of any length but zero"},
+      {.path = "clumps[].instances[].angle",
+       .kind = quantity,
+       .unit = "rad",
+       .fallback = "0",
+       .example = "90 deg",
+       .description = "by which it is turned, by the right-hand rule"},
+      {.path = "clumps[].instances[].velocity",
+       .kind = vector,
+       .unit = "m/s",
+       .fallback = "[0, 0, 0]",
+       .example = "[0, 0, -1.5]",
+       .description = "of the centre at the start"},
+      {.path = "clumps[].instances[].spin",
+       .kind = vector,
+       .unit = "rad/s",
+       .fallback = "[0, 0, 0]",
+       .example = "[0, 10, 0]",
+       .description = "angular velocity at the start, along the axes of the scene"},
+      {.path = "clumps[].instances[].fix",
+       .kind = words,
+       .fallback = "[]",
+       .words = {"x", "y", "z", "wx", "wy", "wz", "all"},
+       .example = "[x, y]",
+       .description =
+           "components of the velocity that keep their value; of the angular velocity all or none"},
+  };
+}
+
+}  // namespace eigengrain::io

@@ -1,0 +1,169 @@
+#include "eigengrain/measures/ledger.hpp"
+
+#include "eigengrain/assembly/local_damping.hpp"
+#include "eigengrain/base/assert.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/parallel.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace eigengrain::measures {
+namespace {
+
+using assembly::State;
+
+constexpr std::int64_t chunk_size = 1024;
+
+/// Kinetic energy, and of the step behind the half of the work that counts with the forces at its end.
+struct Motion {
+  double kinetic = 0;
+  assembly::EnergyIntegrals half;
+
+  Motion& operator+=(const Motion& other) {
+    kinetic += other.kinetic;
+    half += other.half;
+    return *this;
+  }
+  void add(const Vec3& velocity, const Vec3& force, double inertia, double dt, double alpha,
+           std::uint8_t fixed) {
+    for (int k = 0; k < 3; ++k) {
+      const double v = velocity[k];
+      if (((fixed >> k) & 1) != 0) {
+        kinetic += 0.5 * inertia * v * v;
+        half.prescribed -= 0.5 * dt * force[k] * v;
+      } else {
+        const double damping = assembly::local_damping_force(force[k], v, alpha);
+        kinetic += 0.5 * v * (inertia * v + dt * (force[k] + damping));
+        half.damping -= 0.5 * dt * damping * v;
+      }
+    }
+  }
+};
+
+Motion motion_of(const State& state) {
+  const model::Bodies& bodies = state.model.bodies;
+  const double alpha = state.model.local_damping;
+  std::vector<Motion> parts(static_cast<std::size_t>((bodies.size() + chunk_size - 1) / chunk_size));
+  for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+    Motion& part = parts[chunk];
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const model::FixedComponents fixed = bodies.fixed[i];
+      const Vec3 force = state.force[i] + bodies.mass[i] * state.model.gravity;
+      part.add(bodies.velocity[i], force, bodies.mass[i], state.dt, alpha, fixed.translation());
+      if (state.turns())
+        part.add(bodies.spin[i], state.moment[i], bodies.inertia[i], state.dt, alpha, fixed.rotation());
+    }
+  });
+  Motion sum;
+  for (const Motion& part : parts) sum += part;
+  return sum;
+}
+
+double potential_of(const assembly::Model& model) {
+  double sum = 0;
+  for (std::size_t i = 0; i < model.bodies.position.size(); ++i)
+    sum -= model.bodies.mass[i] * model.gravity.dot(model.bodies.position[i]);
+  return sum;
+}
+
+/// Laws of contacts with a shear spring, glued or not; the bonds beside them are told apart by `additive`.
+template <class Law>
+constexpr bool shear_spring_of() {
+  if constexpr (contact::BondLaw<Law>)
+    return !Law::additive;
+  else
+    return requires(const typename Law::State& state) {
+      state.shear;
+    };
+}
+template <class Law>
+inline constexpr bool has_shear_spring = shear_spring_of<Law>();
+
+/// What a contact stores, spring by spring: its energy without the force of one spring after another.
+template <class Law>
+ElasticEnergy stored(const Law& law, const contact::Placement& placement, const contact::Pair& pair,
+                     const contact::ContactGeometry& geometry, const typename Law::State& state) {
+  const auto motion = contact::at_rest_for<Law>(placement, pair, geometry);
+  const double all = law.energy(motion, state);
+  if constexpr (has_shear_spring<Law>) {
+    typename Law::State bare = state;
+    double rolling = 0;
+    if constexpr (requires { bare.moment; }) {
+      bare.moment.setZero();
+      rolling = all - law.energy(motion, bare);
+    }
+    bare.shear.setZero();
+    const double normal = law.energy(motion, bare);
+    return {.normal = normal, .shear = all - rolling - normal, .rolling = rolling};
+  } else if constexpr (contact::BondLaw<Law>) {
+    return {.bonds = all};
+  } else {
+    return {.normal = all};
+  }
+}
+
+}  // namespace
+
+ElasticEnergy elastic_energy(const assembly::Model& model) {
+  ElasticEnergy energy;
+  const contact::Placement placement = model.placement();
+  model.contacts.for_each_group([&](const auto& group) {
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    std::vector<ElasticEnergy> parts(static_cast<std::size_t>((group.size() + chunk_size - 1) / chunk_size));
+    for_chunks(group.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+      ElasticEnergy& part = parts[static_cast<std::size_t>(chunk)];
+      for (auto c = static_cast<std::size_t>(begin); c < static_cast<std::size_t>(end); ++c) {
+        const contact::Pair& pair = group.pairs[c];
+        const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+        if (group.law.acts(contact::at_rest(geometry), group.states[c]))
+          part += stored(group.law, placement, pair, geometry, group.states[c]);
+      }
+    });
+    for (const ElasticEnergy& part : parts) energy += part;
+  });
+  return energy;
+}
+
+Ledger ledger_of(const State& state) {
+  EIGENGRAIN_ASSERT(state.ledger.has_value(), state.step);
+  const Motion motion = motion_of(state);
+  Ledger result{.kinetic = motion.kinetic,
+                .elastic = elastic_energy(state.model),
+                .gravitational = potential_of(state.model),
+                .integrals = state.ledger->integrals};
+  result.integrals += motion.half;
+  result.balance_error = result.kinetic + result.elastic.total() - state.ledger->initial;
+  for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
+    result.balance_error -= integral.sign * integral.of(result.integrals);
+  return result;
+}
+
+std::vector<LedgerEntry> entries_of(const Ledger& ledger) {
+  std::vector<LedgerEntry> entries{{"kinetic", ledger.kinetic},
+                                   {"elastic_normal", ledger.elastic.normal},
+                                   {"elastic_shear", ledger.elastic.shear},
+                                   {"elastic_rolling", ledger.elastic.rolling},
+                                   {"elastic_bonds", ledger.elastic.bonds},
+                                   {"gravitational", ledger.gravitational}};
+  for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
+    entries.push_back({std::string(integral.name), integral.of(ledger.integrals)});
+  entries.push_back({"balance_error", ledger.balance_error});
+  return entries;
+}
+
+void begin_ledger(State& state) {
+  if (!state.model.bodies.clumps.empty())
+    throw InputError(
+        "histories: the ledger does not count the work on clumps; leave `ledger` out of what the table holds "
+        "(`energies` has their kinetic energy)");
+  const Motion motion = motion_of(state);
+  const ElasticEnergy elastic = elastic_energy(state.model);
+  assembly::EnergyLedger ledger{.initial = motion.kinetic + elastic.total()};
+  // The next kick adds the other half of the step behind as well, which is not this ledger's.
+  ledger.integrals.damping = -motion.half.damping;
+  ledger.integrals.prescribed = -motion.half.prescribed;
+  state.ledger = ledger;
+}
+
+}  // namespace eigengrain::measures
