@@ -1,6 +1,7 @@
 #include "eigengrain/cycle/cycle.hpp"
 
 #include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/assembly/selection.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/contact/orientation.hpp"
@@ -60,6 +61,7 @@ State start(const model::Scene& scene) {
   if (bodies.spin.empty() && assembly::needs_rotation(scene)) bodies.spin.assign(count, Vec3::Zero());
   assembly::begin_list(state);
   assembly::renew_forces(state);
+  assembly::make_groups(bodies, scene.groups, state.groups);
   return state;
 }
 

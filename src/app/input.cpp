@@ -19,7 +19,7 @@ namespace {
 /// Whether an override may change what the step rests upon, so that it has to be chosen anew. Without one, a
 /// run goes on with the step that it had, to the bit.
 bool touches_the_step(const std::string& override_text) {
-  constexpr std::array<std::string_view, 4> harmless{"run", "outputs", "histories", "measures"};
+  constexpr std::array<std::string_view, 5> harmless{"run", "outputs", "histories", "measures", "stages"};
   return std::none_of(harmless.begin(), harmless.end(),
                       [&](std::string_view key) { return override_text.starts_with(key); });
 }
@@ -52,16 +52,17 @@ Input read_input(const Options& options) {
   if (!options.output.empty()) make_folder(input.folder);
   input.state = input.continued ? io::read_state(file, options.overrides)
                                 : cycle::start(io::read_scene(file, options.overrides));
-  const auto& overrides = options.overrides;
-  if (input.continued && std::any_of(overrides.begin(), overrides.end(), touches_the_step))
-    input.state.next_dt = 0;
-  if (input.continued && input.state.ledger &&
-      std::any_of(overrides.begin(), overrides.end(), touches_the_energy)) {
-    input.state.ledger.reset();
-    input.state.settings.notes.emplace_back(
+  if (input.continued) adapt_to(options.overrides, input.state);
+  return input;
+}
+
+void adapt_to(std::span<const std::string> overrides, assembly::State& state) {
+  if (std::any_of(overrides.begin(), overrides.end(), touches_the_step)) state.next_dt = 0;
+  if (state.ledger && std::any_of(overrides.begin(), overrides.end(), touches_the_energy)) {
+    state.ledger.reset();
+    state.settings.notes.emplace_back(
         "with other settings the scene has another energy: the ledger begins anew");
   }
-  return input;
 }
 
 Question read_question(const Options& options) {

@@ -5,6 +5,7 @@
 #include "verbs.hpp"
 
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace eigengrain::app {
@@ -20,6 +21,10 @@ struct Input {
 /// Reads a scene (and starts it) or a state. Results go to --output, else to where a state lies, else to the
 /// current folder.
 Input read_input(const Options& options);
+
+/// What other settings mean for a state that goes on with them: its next step, and its ledger, begin anew
+/// where they rest on what has changed.
+void adapt_to(std::span<const std::string> overrides, assembly::State& state);
 
 /// The model that a verb asks a question about, as it stands, and what was said beside its bodies.
 struct Question {

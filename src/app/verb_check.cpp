@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/assembly/selection.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 
@@ -119,6 +120,23 @@ const char* policy_name(model::TimestepPolicy policy) {
   return "estimate";
 }
 
+/// "set 2 keys, more balls, groups, 1 change of bodies, run, save".
+std::string stage_text(const model::Stage& stage) {
+  std::vector<std::string> parts;
+  if (!stage.settings.empty()) parts.push_back("set " + counted(std::ssize(stage.settings), "key", "keys"));
+  if (stage.adds_balls) parts.emplace_back("more balls");
+  if (!stage.groups.empty()) parts.push_back(counted(std::ssize(stage.groups), "group", "groups"));
+  if (!stage.bodies.empty())
+    parts.push_back(counted(std::ssize(stage.bodies), "change of bodies", "changes of bodies"));
+  if (!stage.contacts.empty())
+    parts.push_back(counted(std::ssize(stage.contacts), "choice of contacts", "choices of contacts"));
+  if (stage.run.any()) parts.emplace_back("run");
+  if (stage.relax) parts.push_back(fmt::format("relax to {:g}", stage.relax->tolerance));
+  if (!stage.save.empty()) parts.push_back("save " + stage.save);
+  if (stage.repeat > 1) parts.push_back(fmt::format("{} times", grouped(stage.repeat)));
+  return fmt::format("{}{}{}", stage.name, stage.name.empty() ? "" : ": ", fmt::join(parts, ", "));
+}
+
 void print_settings(const model::Scene& scene) {
   fmt::print("  damping     local, {:g}\n", scene.local_damping);
   if (scene.timestep.dt)
@@ -129,6 +147,12 @@ void print_settings(const model::Scene& scene) {
   if (scene.run.time) fmt::print("  run         until t = {:g} s\n", *scene.run.time);
   if (scene.run.unbalanced)
     fmt::print("  run         until the unbalanced ratio is {:g}\n", *scene.run.unbalanced);
+  if (scene.run.kinetic) fmt::print("  run         until the kinetic energy is {:g} J\n", *scene.run.kinetic);
+  if (scene.run.wall_force)
+    fmt::print("  run         until the force on {} is {:g} N\n", scene.run.wall_force->wall,
+               scene.run.wall_force->at_least);
+  for (std::size_t k = 0; k < scene.stages.size(); ++k)
+    fmt::print("  stage {:<5} {}\n", k + 1, stage_text(scene.stages[k]));
 }
 
 /// All that the verb reports.
@@ -142,7 +166,9 @@ struct Report {
         steps(passes(asked, model, unknowns, groups)),
         absent(left_out(asked, model, unknowns, groups)),
         free(static_cast<std::int64_t>(unknowns.free_components().size())),
-        set_aside(static_cast<std::int64_t>(unknowns.set_aside().size())) {}
+        set_aside(static_cast<std::int64_t>(unknowns.set_aside().size())) {
+    assembly::make_groups(model.bodies, scene.groups, chosen);
+  }
 
   const model::Scene& scene;
   assembly::Model model;
@@ -153,7 +179,15 @@ struct Report {
   std::vector<std::string> absent;
   std::int64_t free;  ///< numbers that are free to move
   std::int64_t set_aside;
+  std::vector<model::Group> chosen;  ///< groups of balls
 };
+
+/// How many balls each group of the scene has at its start.
+ordered_json group_sizes(const Report& report) {
+  ordered_json sizes = ordered_json::object();
+  for (const model::Group& group : report.chosen) sizes[group.name] = group.balls.size();
+  return sizes;
+}
 
 ordered_json to_json(const Report& report) {
   ordered_json groups = ordered_json::array();
@@ -175,6 +209,8 @@ ordered_json to_json(const Report& report) {
           {"set_aside", report.set_aside},
           {"groups", groups},
           {"passes", report.steps},
+          {"groups_of_balls", group_sizes(report)},
+          {"stages", report.scene.stages.size()},
           {"left_out", report.absent},
           {"notes", report.scene.notes}};
 }
@@ -192,6 +228,8 @@ void print(const Report& report) {
   if (const model::Clumps& clumps = report.model.bodies.clumps; !clumps.empty())
     fmt::print("  clumps      {}, of {} of these balls\n", counted(clumps.size(), "clump", "clumps"),
                grouped(static_cast<std::int64_t>(clumps.member.size())));
+  for (const model::Group& group : report.chosen)
+    fmt::print("  group       {}, {}\n", group.name, counted(std::ssize(group.balls), "ball", "balls"));
   for (const std::string& wall : assembly::wall_names(report.model)) fmt::print("  wall        {}\n", wall);
   for (const GroupSummary& g : report.groups) {
     fmt::print(

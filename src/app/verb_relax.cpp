@@ -7,6 +7,7 @@
 #include "input.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "relaxing.hpp"
 #include "state_report.hpp"
 #include "text.hpp"
 #include "verbs.hpp"
@@ -45,14 +46,7 @@ void relax(const Options& options) {
   if (!options.petsc.empty()) petsc::set_options(options.petsc);
   Input input = read_input(options);
   print_notes(input.state.settings);
-  petsc::start();  // before the clock
-  note_interrupts();
-  relaxation::RelaxOptions wanted;
-  wanted.tolerance = options.tolerance;
-  wanted.max_steps = options.max_steps;
-  wanted.report = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
-  wanted.interrupted = [] { return interrupted() != 0; };
-  const RelaxResult result = relaxation::relax(input.state, wanted);
+  const RelaxResult result = relax_with_reports(input.state, options.tolerance, options.max_steps);
   const std::filesystem::path file = input.folder / (input.stem + "-relaxed.h5");
   io::write_state(input.state, file);
   auto report = to_json(result, input.state);
@@ -60,11 +54,7 @@ void relax(const Options& options) {
   if (!input.state.breaks.empty()) report["bonds_broken"] = input.state.breaks.size();
   write_json(options.json, report);
   if (!input.state.breaks.empty()) {
-    // Where a run from the relaxed state goes on with the table. Relaxation has steps, but no time.
-    for (assembly::BondBreak& found : input.state.breaks) {
-      found.step = input.state.step;
-      found.time = input.state.time;
-    }
+    // Where a run from the relaxed state goes on with the table.
     io::BreakFile(input.folder, input.stem + "-relaxed-breaks.csv", std::nullopt).add(input.state.breaks);
     fmt::print("{} broke on the way\n", counted(std::ssize(input.state.breaks), "bond", "bonds"));
   }

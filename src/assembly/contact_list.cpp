@@ -68,20 +68,61 @@ class RuleTable {
   std::vector<std::int32_t> rules_;
 };
 
+bool precedes(const Pair& left, const Pair& right) {
+  return std::tie(left.a, left.b, left.image) < std::tie(right.a, right.b, right.image);
+}
+
+/// A contact that acts by an entry that was chosen for it (assembly/choose_contacts.hpp).
+struct ChosenContact {
+  Pair pair;
+  std::int32_t rule = 0;
+};
+
+/// Those of a kinematics, sorted.
+template <class Kinematics>
+std::vector<ChosenContact> chosen_contacts(const model::Scene& scene, const Model& model,
+                                           const contact::Contacts& contacts) {
+  std::vector<ChosenContact> chosen;
+  if (std::none_of(scene.contacts.begin(), scene.contacts.end(),
+                   [](const auto& rule) { return rule.by_choice(); }))
+    return chosen;
+  const contact::Placement placement = model.placement();
+  contacts.for_each_group([&](const auto& group) {
+    if constexpr (std::is_same_v<typename std::decay_t<decltype(group)>::KinematicsType, Kinematics>) {
+      if (!scene.contacts[static_cast<std::size_t>(group.rule)].by_choice()) return;
+      for (std::size_t c = 0; c < group.pairs.size(); ++c)
+        if (group.law.acts(contact::at_rest(Kinematics::geometry(placement, group.pairs[c])),
+                           group.states[c]))
+          chosen.push_back({group.pairs[c], group.rule});
+    }
+  });
+  std::sort(chosen.begin(), chosen.end(),
+            [](const ChosenContact& l, const ChosenContact& r) { return precedes(l.pair, r.pair); });
+  return chosen;
+}
+
 /// Sorts pairs by the rule that holds for them; a pair whose law is "none" is left out.
 class PairsByRule {
  public:
-  explicit PairsByRule(const model::Scene& scene)
-      : scene_(scene), rule_of_(scene), pairs_(scene.contacts.size()) {}
+  PairsByRule(const model::Scene& scene, std::vector<ChosenContact> chosen)
+      : scene_(scene), rule_of_(scene), chosen_(std::move(chosen)), pairs_(scene.contacts.size()) {}
 
   void add(const Pair& pair, std::int32_t material_a, std::int32_t material_b) {
-    const std::int32_t rule = rule_of_(material_a, material_b);
+    const std::int32_t rule = chosen_.empty() ? rule_of_(material_a, material_b)
+                                              : chosen_rule(pair, rule_of_(material_a, material_b));
     if (rule < 0) throw InputError(missing_rule(material_a, material_b));
     if (scene_.contacts[rule].law != "none") pairs_[rule].push_back(pair);
   }
   std::vector<Pair>& of(std::int32_t rule) { return pairs_[rule]; }
 
  private:
+  std::int32_t chosen_rule(const Pair& pair, std::int32_t otherwise) const {
+    const auto found =
+        std::lower_bound(chosen_.begin(), chosen_.end(), pair,
+                         [](const ChosenContact& l, const Pair& r) { return precedes(l.pair, r); });
+    return found != chosen_.end() && !precedes(pair, found->pair) ? found->rule : otherwise;
+  }
+
   std::string missing_rule(std::int32_t a, std::int32_t b) const {
     const auto name = [&](std::int32_t m) { return scene_.materials[m].name; };
     return fmt::format("no entry of contacts matches {} and {}, which touch; add one with between: [{}, {}]",
@@ -90,6 +131,7 @@ class PairsByRule {
 
   const model::Scene& scene_;
   RuleTable rule_of_;
+  std::vector<ChosenContact> chosen_;
   std::vector<std::vector<Pair>> pairs_;
 };
 
@@ -98,9 +140,10 @@ bool within_clump(const model::Clumps& clumps, const search::CandidatePair& pair
   return !clumps.empty() && clumps.same(pair.a, pair.b) && pair.image == model::Image{};
 }
 
-PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, double reach) {
+PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, const contact::Contacts& before,
+                            double reach) {
   const model::Bodies& bodies = model.bodies;
-  PairsByRule result(scene);
+  PairsByRule result(scene, chosen_contacts<contact::BallBall>(scene, model, before));
   for (const search::CandidatePair& found :
        search::candidate_pairs(bodies.position, bodies.radius, model.cell, reach)) {
     const auto a = static_cast<std::size_t>(found.a);
@@ -115,9 +158,10 @@ PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, doubl
   return result;
 }
 
-PairsByRule ball_wall_pairs(const model::Scene& scene, const Model& model, double reach) {
+PairsByRule ball_wall_pairs(const model::Scene& scene, const Model& model, const contact::Contacts& before,
+                            double reach) {
   const model::Bodies& bodies = model.bodies;
-  PairsByRule result(scene);
+  PairsByRule result(scene, chosen_contacts<contact::BallPlane>(scene, model, before));
   for (std::int32_t i = 0; i < bodies.size(); ++i) {
     const auto ball = static_cast<std::size_t>(i);
     for (std::size_t w = 0; w < model.walls.size(); ++w) {
@@ -127,10 +171,6 @@ PairsByRule ball_wall_pairs(const model::Scene& scene, const Model& model, doubl
     }
   }
   return result;
-}
-
-bool precedes(const Pair& left, const Pair& right) {
-  return std::tie(left.a, left.b, left.image) < std::tie(right.a, right.b, right.image);
 }
 
 /// The facets of a surface, or of its periodic images, that a ball is near to, with sides and choice made.
@@ -224,7 +264,7 @@ std::vector<Pair> facet_pairs(const contact::Contacts& contacts) {
 
 PairsByRule ball_facet_pairs(const model::Scene& scene, const Model& model, const contact::Contacts& before,
                              double reach) {
-  PairsByRule result(scene);
+  PairsByRule result(scene, chosen_contacts<contact::BallFacet>(scene, model, before));
   if (model.surfaces.empty()) return result;
   constexpr std::int64_t chunk_size = 1024;
   const std::vector<double> radii = surface_radii(model);
@@ -414,10 +454,10 @@ void list_contacts(Model& model, const model::Scene& scene, double reach, NewCon
   contact::Contacts before = std::exchange(model.contacts, {});
   before.for_each_group([](auto& group) { sort_contacts(group); });
   const bool touching_only = reach <= 0;
-  list_kind<contact::BallBall>(ball_ball_pairs(scene, model, reach), scene, before, model, touching_only,
-                               touching);
-  list_kind<contact::BallPlane>(ball_wall_pairs(scene, model, reach), scene, before, model, touching_only,
-                                touching);
+  list_kind<contact::BallBall>(ball_ball_pairs(scene, model, before, reach), scene, before, model,
+                               touching_only, touching);
+  list_kind<contact::BallPlane>(ball_wall_pairs(scene, model, before, reach), scene, before, model,
+                                touching_only, touching);
   list_kind<contact::BallFacet>(ball_facet_pairs(scene, model, before, reach), scene, before, model,
                                 touching_only, touching);
   carry_bonds(before, model);

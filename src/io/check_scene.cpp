@@ -12,16 +12,17 @@
 namespace eigengrain::io {
 namespace {
 
-/// How many balls each material has.
-std::vector<std::int64_t> balls_of_materials(const model::Scene& scene) {
-  std::vector<std::int64_t> count(scene.materials.size());
-  for (const std::int32_t material : scene.bodies.material)
+/// How many balls each material has, or will have: those that stages add count as two.
+std::vector<std::int64_t> balls_of_materials(const SceneDraft& draft) {
+  std::vector<std::int64_t> count(draft.scene.materials.size());
+  for (const std::int32_t material : draft.scene.bodies.material)
     if (material >= 0) ++count[material];
+  for (const std::int32_t material : draft.materials_to_come) count[material] += 2;
   return count;
 }
 
 void check_densities(const SceneDraft& draft, Diagnostics& diagnostics) {
-  const std::vector<std::int64_t> balls = balls_of_materials(draft.scene);
+  const std::vector<std::int64_t> balls = balls_of_materials(draft);
   for (std::size_t k = 0; k < balls.size(); ++k) {
     const model::Material& material = draft.scene.materials[k];
     if (balls[k] > 0 && material.density == 0)
@@ -36,7 +37,7 @@ void check_densities(const SceneDraft& draft, Diagnostics& diagnostics) {
 void check_rules(const Section& root, const SceneDraft& draft) {
   const model::Scene& scene = draft.scene;
   if (!draft.contacts_complete) return;
-  for (const auto& [a, b] : meeting_pairs(scene)) {
+  for (const auto& [a, b] : meeting_pairs(draft)) {
     if (scene.rule_for(a, b) >= 0) continue;
     root.report(
         "contacts",
@@ -130,8 +131,9 @@ void note_size(const model::Surface& surface, model::Scene& scene) {
 
 }  // namespace
 
-std::set<std::pair<std::int32_t, std::int32_t>> meeting_pairs(const model::Scene& scene) {
-  const std::vector<std::int64_t> balls = balls_of_materials(scene);
+std::set<std::pair<std::int32_t, std::int32_t>> meeting_pairs(const SceneDraft& draft) {
+  const model::Scene& scene = draft.scene;
+  const std::vector<std::int64_t> balls = balls_of_materials(draft);
   const auto count = static_cast<std::int32_t>(balls.size());
   const auto balls_of = [&](std::int32_t material) { return balls[material]; };
   std::set<std::pair<std::int32_t, std::int32_t>> pairs;

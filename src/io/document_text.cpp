@@ -43,6 +43,12 @@ void append(const Node& node, std::string& text) {
 
 }  // namespace
 
+std::string node_text(const Node& node) {
+  std::string text;
+  append(node, text);
+  return text;
+}
+
 std::string document_text(const Node& root, std::string_view left_out) {
   std::string text;
   for (const Node& child : root.children) {

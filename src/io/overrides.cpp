@@ -70,9 +70,10 @@ void apply(const std::string& text, const std::string& file, Node& root, Diagnos
 
 }  // namespace
 
-void apply_overrides(std::span<const std::string> overrides, Document& document, Diagnostics& diagnostics) {
+void apply_overrides(std::span<const std::string> overrides, std::string_view origin, Document& document,
+                     Diagnostics& diagnostics) {
   for (const std::string& text : overrides) {
-    const std::string& file = document.files.emplace_back("--set " + text);
+    const std::string& file = document.files.emplace_back(fmt::format("{} {}", origin, text));
     apply(text, file, document.root, diagnostics);
   }
 }

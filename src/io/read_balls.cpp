@@ -103,10 +103,10 @@ void read_entry(const Section& section, SceneDraft& draft, BallList& balls) {
 
 }  // namespace
 
-model::FixedComponents read_fixed(const Section& section) {
+model::FixedComponents read_fixed(const Section& section, std::string_view key) {
   static constexpr std::array<std::string_view, 6> components{"x", "y", "z", "wx", "wy", "wz"};
   model::FixedComponents fixed;
-  for (const std::string& word : section.texts("fix").value_or(std::vector<std::string>())) {
+  for (const std::string& word : section.texts(key).value_or(std::vector<std::string>())) {
     if (word == "all") return model::FixedComponents(63);
     for (int k = 0; k < 6; ++k)
       if (components[k] == word) fixed.fix(k);
@@ -119,11 +119,17 @@ Place BallPlaces::of(std::int32_t ball) const {
   return {files[static_cast<std::size_t>(file[b])], line[b]};
 }
 
+void read_ball_entries(const std::vector<Section>& entries, SceneDraft& draft) {
+  for (const Section& section : entries) {
+    BallList balls(draft, section.diagnostics());
+    read_entry(section, draft, balls);
+  }
+}
+
 void read_balls(const Section& root, SceneDraft& draft) {
   Diagnostics& diagnostics = root.diagnostics();
   const std::int64_t mistakes_before = diagnostics.count();
-  BallList balls(draft, diagnostics);
-  for (const Section& section : root.sections("balls")) read_entry(section, draft, balls);
+  read_ball_entries(root.sections("balls"), draft);
   if (root.has("balls") && draft.scene.bodies.size() == 0 && diagnostics.count() == mistakes_before)
     root.report("balls", "no balls; add e.g. \"- {position: [0, 0, 0], radius: 5 mm, material: grain}\"");
   draft.balls_complete = diagnostics.count() == mistakes_before;

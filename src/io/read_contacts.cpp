@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace eigengrain::io {
@@ -113,6 +114,24 @@ void read_bond(const Section& contact, ContactRule& rule) {
   check_contact_bond(contact, rule);
 }
 
+/// An entry with a name is for contacts that exist already, of any materials.
+void read_name(const Section& section, const std::vector<ContactRule>& rules, ContactRule& rule) {
+  if (!section.has("name")) return;
+  const auto name = section.text("name");
+  if (!name) return;
+  rule.name = *name;
+  if (std::any_of(rules.begin(), rules.end(), [&](const ContactRule& other) { return other.name == *name; }))
+    section.report("name", fmt::format("\"{}\" is the name of another entry; choose another one", *name));
+  if (rule.law == "none")
+    section.report("law", "none beside a name: contacts that exist need a law; write e.g. \"law: linear\"");
+  if (rule.bond)
+    section.report("bond", "beside a name: bonds are made when the scene starts; leave out one of the two");
+  if (std::any_of(rule.parameters.begin(), rule.parameters.end(), [](double p) { return std::isnan(p); }))
+    section.report("name",
+                   "beside parameters that are left to the materials, which differ from contact to "
+                   "contact; give all of them here");
+}
+
 /// Whether the rule matches every pair that the other one does ("any" is matched by "any" only).
 bool covers(const ContactRule& rule, const ContactRule& other) {
   return rule.matches(other.first, other.second);
@@ -133,6 +152,7 @@ void read_contacts(const Section& root, SceneDraft& draft) {
     draft.contacts_complete = draft.contacts_complete && known_pair;
     read_law(section, draft.scene, rule);
     read_bond(section, rule);
+    read_name(section, rules, rule);
     if (!known_pair) continue;
     // A pair whose law has mistakes still counts as one that has a law: one report is enough.
     const auto earlier =

@@ -4,9 +4,11 @@
 
 #include "section.hpp"
 
+#include <string_view>
+
 namespace eigengrain::io {
 
-/// The key `fix` of balls and clumps.
-model::FixedComponents read_fixed(const Section& section);
+/// A key that names components of motion.
+model::FixedComponents read_fixed(const Section& section, std::string_view key = "fix");
 
 }  // namespace eigengrain::io

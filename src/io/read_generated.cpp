@@ -148,18 +148,20 @@ bool read_density(const Section& section, FillWish& wish) {
   return section.has("mean_overlap") ? wish.mean_overlap.has_value() : fraction.has_value();
 }
 
-std::optional<FillWish> read_wish(const Section& section, const model::PeriodicCell& cell) {
+std::optional<FillWish> read_wish(const Section& section, const SceneDraft& draft) {
   FillWish wish;
   const auto fill = section.text("fill");
   wish.dense = fill && *fill == "dense";
+  if (wish.dense && draft.repetition)
+    section.report("fill", "dense would press on what is there; take random, and let the balls settle");
   const bool density = read_density(section, wish);
   const auto sizes = read_sizes(section);
-  const auto region = read_region(section, cell);
+  const auto region = read_region(section, draft.scene.cell);
   const auto seed = section.integer("seed");
   if (!fill || !density || !sizes || !region || !seed) return std::nullopt;
   wish.sizes = *sizes;
   wish.region = *region;
-  wish.seed = static_cast<std::uint64_t>(*seed);
+  wish.seed = static_cast<std::uint64_t>(*seed + draft.repetition.value_or(0));
   return wish;
 }
 
@@ -213,7 +215,7 @@ void read_lattice(const Section& section, const BallKind& kind, const SceneDraft
 }
 
 void read_fill(const Section& section, const BallKind& kind, SceneDraft& draft, BallList& balls) {
-  const auto wish = read_wish(section, draft.scene.cell);
+  const auto wish = read_wish(section, draft);
   if (!wish || kind.material < 0) return;  // a packing may take minutes, and this scene is refused anyway
   std::string note;
   add_made(section, "fill", kind, balls, [&] { return fill(*wish, note); });

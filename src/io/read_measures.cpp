@@ -1,56 +1,15 @@
 #include "eigengrain/io/scene_reader.hpp"
 
 #include "document.hpp"
+#include "read_selection.hpp"
 #include "scene_draft.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 namespace eigengrain::io {
-namespace {
-
-std::optional<model::SphereRegion> read_sphere(const Section& section) {
-  section.check_keys();
-  const auto centre = section.vector("centre");
-  const auto radius = section.quantity("radius");
-  if (!centre || !radius) return std::nullopt;
-  return model::SphereRegion{*centre, *radius};
-}
-
-std::optional<model::BoxRegion> read_box(const Section& section) {
-  section.check_keys();
-  const auto min = section.vector("min");
-  const auto max = section.vector("max");
-  if (!min || !max) return std::nullopt;
-  bool open = true;
-  for (int k = 0; k < 3; ++k)
-    if (!((*min)[k] < (*max)[k])) {
-      section.report("max", fmt::format("{} m along {}, and min is {} m; max must be larger", (*max)[k],
-                                        static_cast<char>('x' + k), (*min)[k]));
-      open = false;
-    }
-  return open ? std::optional(model::BoxRegion{*min, *max}) : std::nullopt;
-}
-
-/// The shape of a region; none if something is wrong with it, which has been reported.
-std::optional<decltype(model::Region::shape)> read_shape(const Section& section) {
-  const auto sphere = section.section("sphere");
-  const auto box = section.section("box");
-  if (sphere && box) {
-    section.report("box", "a region is a sphere or a box, not both; make it two entries");
-    return std::nullopt;
-  }
-  if (sphere) return read_sphere(*sphere);
-  if (box) return read_box(*box);
-  if (section.has("sphere") || section.has("box")) return std::nullopt;
-  return model::WholeRegion{};
-}
-
-}  // namespace
-
 void read_measures(const Section& root, SceneDraft& draft) {
   std::vector<model::Region>& regions = draft.scene.measures;
   std::size_t number = 0;

@@ -1,6 +1,10 @@
+#include "read_selection.hpp"
 #include "scene_draft.hpp"
 
 #include <fmt/format.h>
+
+#include <optional>
+#include <string>
 
 namespace eigengrain::io {
 
@@ -57,19 +61,43 @@ void read_timestep(const Section& root, SceneDraft& draft) {
         "dt", fmt::format("has no meaning with policy {}; write \"policy: fixed\" or remove dt", *policy));
 }
 
+namespace {
+
+std::optional<model::WallForceGoal> read_wall_force(const Section& section, const SceneDraft& draft) {
+  section.check_keys();
+  const auto wall = section.text("wall");
+  const auto force = section.quantity("at_least");
+  if (!wall || !force) return std::nullopt;
+  check_wall_name(section, *wall, draft);
+  return model::WallForceGoal{*wall, *force};
+}
+
+void read_until(const Section& section, const SceneDraft& draft, model::RunChoice& run) {
+  section.check_keys();
+  run.unbalanced = section.quantity("unbalanced");
+  run.kinetic = section.quantity("kinetic");
+  if (const auto wall_force = section.section("wall_force"))
+    run.wall_force = read_wall_force(*wall_force, draft);
+  if (!section.has("unbalanced") && !section.has("kinetic") && !section.has("wall_force"))
+    section.report("says nothing; add e.g. \"unbalanced: 1e-5\", or remove it");
+}
+
+}  // namespace
+
+model::RunChoice read_end_of_run(const Section& section, const SceneDraft& draft) {
+  section.check_keys();
+  model::RunChoice run;
+  run.steps = section.integer("steps");
+  run.time = section.quantity("time");
+  if (const auto until = section.section("until")) read_until(*until, draft, run);
+  if (!section.has("steps") && !section.has("time") && !section.has("until"))
+    section.report(
+        "says nothing; add \"steps: 10000\", \"time: 2 s\" or \"until: {unbalanced: 1e-5}\", or remove it");
+  return run;
+}
+
 void read_run(const Section& root, SceneDraft& draft) {
-  const auto section = root.section("run");
-  if (!section) return;
-  section->check_keys();
-  draft.scene.run.steps = section->integer("steps");
-  draft.scene.run.time = section->quantity("time");
-  if (const auto until = section->section("until")) {
-    until->check_keys();
-    draft.scene.run.unbalanced = until->quantity("unbalanced");
-  }
-  if (!section->has("steps") && !section->has("time") && !section->has("until"))
-    section->report(
-        "says nothing; add \"steps: 10000\", \"time: 2 s\" or \"until: {unbalanced: 1e-5}\", or remove run");
+  if (const auto section = root.section("run")) draft.scene.run = read_end_of_run(*section, draft);
 }
 
 }  // namespace eigengrain::io

@@ -9,6 +9,7 @@
 #include "restore_contacts.hpp"
 #include "seal.hpp"
 #include "settings_reader.hpp"
+#include "state_changes.hpp"
 #include "state_layout.hpp"
 #include "text_file.hpp"
 
@@ -182,75 +183,24 @@ void read_ledger(const h5::File& hdf5, assembly::State& state) {
   });
 }
 
-/// Overrides may not pull away what the stored numbers rest upon.
-void refuse_changes(const model::Scene& stored, const model::Scene& now, const fs::path& file) {
-  if (now.materials.size() != stored.materials.size())
-    refuse(file, fmt::format("materials: {} entries; the state has {}, and its balls name them by number; "
-                             "keep their number and their order",
-                             now.materials.size(), stored.materials.size()));
-  for (std::size_t k = 0; k < now.materials.size(); ++k)
-    if (now.materials[k].density != stored.materials[k].density)
-      refuse(file, fmt::format("materials[{}].density: {} kg/m3; the balls of a state have their masses from "
-                               "{} kg/m3 and keep them; leave it out, or start from the scene",
-                               k, now.materials[k].density, stored.materials[k].density));
-  for (std::size_t r = 0; r < std::min(now.contacts.size(), stored.contacts.size()); ++r) {
-    const auto kind = [&](const model::Scene& scene) {
-      const auto& bond = scene.contacts[r].bond;
-      return bond ? bond->kind : std::string("none");
-    };
-    if (kind(now) != kind(stored))
-      refuse(file,
-             fmt::format("contacts[{}].bond: {}; the bonds of a state are those it was started with ({}); "
-                         "keep the kind, or start from the scene",
-                         now.contacts[r].entry, kind(now), kind(stored)));
+void read_groups(const h5::File& hdf5, assembly::State& state) {
+  for (std::size_t k = 0;; ++k) {
+    const std::string path = fmt::format("{}/{}", layout::groups, k);
+    if (!hdf5.has(path)) return;
+    const std::string balls = path + "/balls";
+    state.groups.push_back({hdf5.text(path, "name"), hdf5.read<std::int64_t>(balls, hdf5.rows(balls))});
   }
-  if (now.walls.size() != stored.walls.size())
-    refuse(file, fmt::format("walls: {} planes; the state has {}, and its contacts name them by number; keep "
-                             "their number and their order",
-                             now.walls.size(), stored.walls.size()));
-  const auto triangles = [](const model::Scene& scene) {
-    std::vector<std::size_t> counts;
-    for (const model::Surface& surface : scene.surfaces) counts.push_back(surface.triangles.size());
-    return counts;
-  };
-  if (triangles(now) != triangles(stored))
-    refuse(file,
-           "walls: other polygons or meshes than those of the state, whose contacts name their "
-           "triangles by number; keep them");
-  if (now.cell.periodic != stored.cell.periodic)
-    refuse(file, "periodic: other axes than those of the state, whose contacts reach through them");
 }
 
-bool same_place(const model::Plane& first, const model::Plane& second) {
-  return first.point == second.point && first.normal == second.normal && first.centre == second.centre;
-}
-
-/// Whether contacts may be elsewhere than where the neighbour list looked for them.
-bool surroundings_moved(const model::Scene& stored, const model::Scene& now) {
-  return now.cell.origin != stored.cell.origin || now.cell.lengths != stored.cell.lengths ||
-         !std::equal(now.walls.begin(), now.walls.end(), stored.walls.begin(), stored.walls.end(),
-                     same_place) ||
-         !std::equal(now.surfaces.begin(), now.surfaces.end(), stored.surfaces.begin(), stored.surfaces.end(),
-                     [](const model::Surface& l, const model::Surface& r) {
-                       return l.vertices == r.vertices && l.two_sided == r.two_sided && l.centre == r.centre;
-                     });
-}
-
-/// Whether pairs may have a law that had none: those are not in the list.
-bool pairs_may_be_new(const model::Scene& stored, const model::Scene& now) {
-  const auto same_rule = [](const model::ContactRule& l, const model::ContactRule& r) {
-    return l.first == r.first && l.second == r.second && l.law == r.law;
-  };
-  const auto same_material = [](const model::Plane& l, const model::Plane& r) {
-    return l.material == r.material;
-  };
-  return !std::equal(now.contacts.begin(), now.contacts.end(), stored.contacts.begin(), stored.contacts.end(),
-                     same_rule) ||
-         !std::equal(now.walls.begin(), now.walls.end(), stored.walls.begin(), stored.walls.end(),
-                     same_material) ||
-         !std::equal(
-             now.surfaces.begin(), now.surfaces.end(), stored.surfaces.begin(), stored.surfaces.end(),
-             [](const model::Surface& l, const model::Surface& r) { return l.material == r.material; });
+void read_progress(const h5::File& hdf5, assembly::State& state) {
+  if (!hdf5.has(layout::progress)) return;
+  layout::for_each_progress(state.progress, [&](const char* name, auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, double>)
+      value = hdf5.number(layout::progress, name);
+    else
+      value = static_cast<Value>(hdf5.integer(layout::progress, name));
+  });
 }
 
 model::Scene read_settings(const std::string& document, const fs::path& file,
@@ -272,12 +222,14 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   read_clumps(hdf5, state);
   read_list(hdf5, state);
   read_ledger(hdf5, state);
+  read_groups(hdf5, state);
+  read_progress(hdf5, state);
   const std::string document = hdf5.read_text(layout::settings);
   const model::Scene stored = read_settings(document, file, {}, state.model.bodies);
   state.settings = read_settings(document, file, overrides, state.model.bodies);
   state.settings.name = hdf5.text(layout::root, "scene");
   refuse_changed_meshes(hdf5, stored, file);
-  refuse_changes(stored, state.settings, file);
+  if (const auto problem = forbidden_change(stored, state.settings)) refuse(file, *problem);
   assembly::set_surroundings(state.model, state.settings);
   read_walls(hdf5, file, state);
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());

@@ -5,6 +5,7 @@
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/contact/bonds.hpp"
 #include "eigengrain/contact/law_table.hpp"
+#include "eigengrain/contact/state_numbers.hpp"
 
 #include "state_layout.hpp"
 
@@ -138,6 +139,7 @@ class GroupReader {
   /// The entry of `contacts` that holds for each pair now has to be the one that held for it.
   template <class Kinematics, class Group>
   void check_rules(const Group& group) const {
+    if (settings_.contacts[static_cast<std::size_t>(group.rule)].by_choice()) return;
     const std::vector<std::int32_t>& material = model_.bodies.material;
     const std::size_t materials = settings_.materials.size();
     std::vector<bool> known(materials * materials);
@@ -161,23 +163,18 @@ class GroupReader {
   /// since, such as a dashpot, keeps what it starts with.
   template <class Group>
   void read_states(Group& group, const std::vector<std::string>& stored) const {
-    if constexpr (!std::is_empty_v<typename Group::State>) {
-      std::size_t offset = 0;
-      for (const contact::StateField& field : Group::LawType::state_fields) {
-        const auto components = static_cast<std::size_t>(field.components);
-        if (std::find(stored.begin(), stored.end(), field.name) == stored.end()) {
-          offset += components * sizeof(double);
-          continue;
-        }
-        const std::vector<double> values = file_.read_doubles(fmt::format("{}/{}", path_, field.name),
-                                                              group.states.size(), field.components);
-        for (std::size_t c = 0; c < group.states.size(); ++c) {
-          const auto bytes = std::as_writable_bytes(std::span(&group.states[c], 1));
-          std::memcpy(&bytes[offset], &values[components * c], components * sizeof(double));
-        }
-        offset += components * sizeof(double);
-      }
-    }
+    if constexpr (!std::is_empty_v<typename Group::State>)
+      contact::for_each_field<typename Group::LawType>(
+          [&](const contact::StateField& field, std::size_t offset) {
+            if (std::find(stored.begin(), stored.end(), field.name) == stored.end()) return;
+            const auto components = static_cast<std::size_t>(field.components);
+            const std::vector<double> values = file_.read_doubles(fmt::format("{}/{}", path_, field.name),
+                                                                  group.states.size(), field.components);
+            for (std::size_t c = 0; c < group.states.size(); ++c) {
+              const auto bytes = std::as_writable_bytes(std::span(&group.states[c], 1));
+              std::memcpy(&bytes[offset], &values[components * c], components * sizeof(double));
+            }
+          });
   }
 
   /// As assembly::list_contacts does it for a contact that is new.

@@ -41,10 +41,13 @@ struct SceneDraft {
   std::vector<Place> material_places;
   std::vector<Place> contact_places;  ///< of the entries behind the rules
   std::vector<Place> wall_places;
-  bool contacts_complete = true;  ///< no entry was left out because of a mistake
-  bool balls_complete = true;     ///< neither was a ball
-  bool walls_complete = true;     ///< nor a wall
-  bool measures_complete = true;  ///< nor a region
+  bool contacts_complete = true;             ///< no entry was left out because of a mistake
+  bool balls_complete = true;                ///< neither was a ball
+  bool walls_complete = true;                ///< nor a wall
+  bool measures_complete = true;             ///< nor a region
+  std::set<std::int32_t> materials_to_come;  ///< of balls that stages add
+  /// Where the balls that are read come into a scene that has some: the repetition of their stage.
+  std::optional<std::int64_t> repetition;
 };
 
 /// One function for each section of the scene; each reads its own keys only. Those that use the materials
@@ -62,9 +65,21 @@ void read_gravity(const Section& root, SceneDraft& draft);
 void read_damping(const Section& root, SceneDraft& draft);
 void read_timestep(const Section& root, SceneDraft& draft);
 void read_run(const Section& root, SceneDraft& draft);
+/// After read_walls.
+void read_stages(const Section& root, SceneDraft& draft);
 void read_measures(const Section& root, SceneDraft& draft);
 void read_histories(const Section& root, SceneDraft& draft);
 void read_outputs(const Section& root, SceneDraft& draft);
+
+/// Balls of a list of entries as `balls`, into the draft.
+void read_ball_entries(const std::vector<Section>& entries, SceneDraft& draft);
+
+/// `run`, or that of a stage. After read_walls.
+model::RunChoice read_end_of_run(const Section& section, const SceneDraft& draft);
+
+/// What the stages ask for, tried out on the settings of the scene, `document`, which each of them changes
+/// for those that follow.
+void check_stages(const Section& root, const SceneDraft& draft, std::string_view document);
 
 /// Index of the material that the key names; -1, after a report, if there is none, and -1 if the key is
 /// absent.
@@ -74,7 +89,7 @@ std::int32_t read_material(const Section& section, std::string_view key, const m
 inline constexpr double left_to_materials = std::numeric_limits<double>::quiet_NaN();
 
 /// Pairs of materials that can meet, the smaller index first.
-std::set<std::pair<std::int32_t, std::int32_t>> meeting_pairs(const model::Scene& scene);
+std::set<std::pair<std::int32_t, std::int32_t>> meeting_pairs(const SceneDraft& draft);
 
 /// Computes the parameters that entries of `contacts` leave to the materials: such a rule is replaced by one
 /// for each pair of materials that it holds for and that can meet.

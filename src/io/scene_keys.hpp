@@ -2,6 +2,7 @@
 
 #include "eigengrain/io/schema.hpp"
 
+#include <string>
 #include <vector>
 
 /// The table of keys (docs/scene-schema.md) by what they are about. The description says what the reader does
@@ -22,7 +23,19 @@ std::vector<KeyDescription> clump_keys();
 /// Walls and the periodic cell.
 std::vector<KeyDescription> wall_keys();
 
-/// How the scene moves, and what is written of it.
+/// How the scene moves, and for how long.
 std::vector<KeyDescription> run_keys();
+
+/// What is measured and written.
+std::vector<KeyDescription> output_keys();
+
+/// Groups of balls, and stages.
+std::vector<KeyDescription> stage_keys();
+
+/// The shapes of a region, in a section.
+std::vector<KeyDescription> region_keys(const std::string& section, const std::string& box);
+
+/// When a run ends, in a section; its numbers count since the start of `since`.
+std::vector<KeyDescription> end_of_run_keys(const std::string& section, const std::string& since);
 
 }  // namespace eigengrain::io

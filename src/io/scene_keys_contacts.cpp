@@ -87,6 +87,11 @@ std::vector<KeyDescription> contact_keys() {
        .example = "linear",
        .description = "the contact law, see below; `none`: the two do not see each other"},
 
+      {.path = "contacts[].name",
+       .kind = text,
+       .example = "soft",
+       .description =
+           "with a name, an entry holds for no pair by itself, only for contacts that a stage gives it"},
       {.path = "contacts[].bond",
        .kind = section,
        .example = "{kind: parallel, kn: 1e12 Pa/m, tension: 5 MPa, gap: 10 um}",

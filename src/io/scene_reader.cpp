@@ -31,13 +31,14 @@ void read_sections(const Section& root, SceneDraft& draft, const TakeBalls& take
   read_damping(root, draft);
   read_timestep(root, draft);
   read_run(root, draft);
+  read_stages(root, draft);
   read_measures(root, draft);
   read_histories(root, draft);
   read_outputs(root, draft);
 }
 
 Document read_document(std::string_view yaml, std::string_view name, std::span<const std::string> overrides,
-                       Diagnostics& diagnostics) {
+                       std::string_view origin, Diagnostics& diagnostics) {
   Document document;
   document.root = parse_yaml(yaml, document.files.emplace_back(name), diagnostics);
   // Half of a document would only give mistakes that are none.
@@ -49,7 +50,7 @@ Document read_document(std::string_view yaml, std::string_view name, std::span<c
                                 kind_name(document.root.kind)));
     diagnostics.throw_if_any();
   }
-  apply_overrides(overrides, document, diagnostics);
+  apply_overrides(overrides, origin, document, diagnostics);
   return document;
 }
 
@@ -62,19 +63,26 @@ void make_absolute(Node* path, const std::filesystem::path& folder) {
     path->text = std::filesystem::absolute(folder / path->text).lexically_normal().string();
 }
 
-/// The document with the paths of files that walls name made absolute: a state, which keeps it, may stand in
-/// any folder.
+void make_paths_of_wall_absolute(Node& wall, const std::filesystem::path& folder) {
+  for (Node& child : wall.children) {
+    make_absolute(child.key == "motion_file" ? &child : nullptr, folder);
+    make_absolute(child.key == "mesh" ? child.find("file") : nullptr, folder);
+  }
+}
+
+/// The document with the paths of files that walls and stages name made absolute: a state, which keeps it,
+/// may stand in any folder.
 std::string document_for_states(const Document& document, const std::filesystem::path& folder) {
   Node root;
   for (const Node& section : document.root.children)
     if (section.key != balls_key && section.key != clumps_key) root.children.push_back(section);
   for (Node& section : root.children) {
-    if (section.key != "walls") continue;
-    for (Node& wall : section.children)
-      for (Node& child : wall.children) {
-        make_absolute(child.key == "motion_file" ? &child : nullptr, folder);
-        make_absolute(child.key == "mesh" ? child.find("file") : nullptr, folder);
-      }
+    if (section.key == "walls")
+      for (Node& wall : section.children) make_paths_of_wall_absolute(wall, folder);
+    if (section.key == "stages")
+      for (Node& stage : section.children)
+        if (Node* balls = stage.find(balls_key))
+          for (Node& entry : balls->children) make_absolute(entry.find("file"), folder);
   }
   return document_text(root, balls_key);
 }
@@ -103,7 +111,7 @@ void take_materials_of_balls(const Section& root, SceneDraft& draft,
 model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path& folder,
                              std::string_view name, std::span<const std::string> overrides) {
   Diagnostics diagnostics;
-  const Document document = read_document(yaml, name, overrides, diagnostics);
+  const Document document = read_document(yaml, name, overrides, "--set", diagnostics);
   SceneDraft draft;
   draft.scene.name = name;
   draft.folder = folder;
@@ -119,23 +127,25 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   take_from_materials(draft, diagnostics);
   check_placement(root, draft);
   diagnostics.throw_if_any();
+  check_stages(root, draft, draft.scene.document);
+  diagnostics.throw_if_any();
   add_notes(draft);
   return std::move(draft.scene);
 }
 
 model::Scene read_settings_text(std::string_view text, const std::filesystem::path& folder,
                                 std::string_view name, std::span<const std::string> overrides,
-                                std::span<const std::int32_t> material_of_ball) {
+                                std::span<const std::int32_t> material_of_ball, std::string_view origin) {
   Diagnostics diagnostics;
-  const Document document = read_document(text, name, overrides, diagnostics);
+  const Document document = read_document(text, name, overrides, origin, diagnostics);
   SceneDraft draft;
   draft.scene.name = name;
   draft.folder = folder;
   draft.scene.document = document_for_states(document, folder);
   const Section root(document.root, "", "", diagnostics);
   root.check_keys(balls_key);
-  for (const std::string& text : overrides)
-    if (text.starts_with(planar_key))
+  for (const std::string& override_text : overrides)
+    if (override_text.starts_with(planar_key))
       root.report(planar_key,
                   "a state keeps the plane and the masses that it was started with; leave the "
                   "override out, or start from the scene");
@@ -148,6 +158,21 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
   add_notes(draft);
   draft.scene.bodies = {};
   return std::move(draft.scene);
+}
+
+model::Bodies read_added_balls(const model::Scene& settings, std::int64_t stage, std::int64_t repetition) {
+  Diagnostics diagnostics;
+  const Document document = read_document(settings.document, settings.name, {}, "--set", diagnostics);
+  SceneDraft draft;
+  draft.repetition = repetition;
+  const Section root(document.root, "", "", diagnostics);
+  read_materials(root, draft);
+  read_periodic(root, draft);
+  read_planar(root, draft);
+  const std::vector<Section> stages = root.sections("stages");
+  read_ball_entries(stages[static_cast<std::size_t>(stage)].sections(balls_key), draft);
+  diagnostics.throw_if_any();
+  return std::move(draft.scene.bodies);
 }
 
 model::Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides) {

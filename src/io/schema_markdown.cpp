@@ -110,7 +110,7 @@ at once. `--set key=value` on the command line acts as if the file said so: `--s
 )";
   text += table_head;
   for (const KeyDescription& key : scene_schema())
-    if (key.law.empty()) text += table_row(key, key.path);
+    if (key.law.empty() && !key.path.starts_with("stages[].balls[].")) text += table_row(key, key.path);
   text +=
       "\n## Contact laws\n\nThe parameters stand beside `law`, in the same entry of `contacts`; "
       "those in brackets have defaults.\n";

@@ -3,6 +3,7 @@
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/io/suggest.hpp"
 
+#include "document_text.hpp"
 #include "quantity.hpp"
 
 #include <fmt/format.h>
@@ -235,6 +236,13 @@ std::vector<Section> Section::sections(std::string_view key) const {
                 fmt::format("{} stands where a section is wanted, e.g. \"{}: {}\"", kind_name(child.kind),
                             key, description.example));
   }
+  return result;
+}
+
+std::vector<FreeKey> Section::free_keys(std::string_view key) const {
+  std::vector<FreeKey> result;
+  if (const Node* node = value(key, Node::Kind::map))
+    for (const Node& child : node->children) result.push_back({child.key, node_text(child)});
   return result;
 }
 

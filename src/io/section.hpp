@@ -13,6 +13,12 @@
 
 namespace eigengrain::io {
 
+/// A key of a section that may have any, with its value as YAML.
+struct FreeKey {
+  std::string key;
+  std::string value;
+};
+
 /// A light view of one section of the scene. Its getters know from the schema which kind, unit, range and
 /// default a key has; what does not fit is reported with its place, and the getter returns nothing.
 class Section {
@@ -43,6 +49,8 @@ class Section {
   std::optional<std::vector<std::string>> texts(std::string_view key) const;
   std::optional<Section> section(std::string_view key) const;
   std::vector<Section> sections(std::string_view key) const;
+  /// All keys of a section that the schema leaves open.
+  std::vector<FreeKey> free_keys(std::string_view key) const;
 
   /// A mistake at the key, or where the section begins if the key is absent.
   void report(std::string_view key, std::string_view message) const;

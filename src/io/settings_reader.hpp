@@ -15,8 +15,10 @@ namespace eigengrain::io {
 /// checked. The scene has no bodies.
 ///
 /// material_of_ball  [balls] index into the scene's materials; one out of range is a mistake
+/// origin            of the overrides, for messages
 model::Scene read_settings_text(std::string_view document, const std::filesystem::path& folder,
                                 std::string_view name, std::span<const std::string> overrides,
-                                std::span<const std::int32_t> material_of_ball);
+                                std::span<const std::int32_t> material_of_ball,
+                                std::string_view origin = "--set");
 
 }  // namespace eigengrain::io

@@ -35,6 +35,8 @@ inline const std::string clumps = "/clumps";
 inline const std::string contacts = "/contacts";
 inline const std::string list = "/neighbour_list";
 inline const std::string ledger = "/ledger";
+inline const std::string groups = "/groups";
+inline const std::string progress = "/stages";
 inline const std::string list_position = "/neighbour_list/position";
 inline const std::string list_wall_lever = "/neighbour_list/wall_lever";
 inline const std::string surfaces = "/surfaces";
@@ -84,6 +86,16 @@ void for_each_number(State& state, const Visit& visit) {
   visit("step", state.step);
   visit("dt", state.dt);
   visit("next_dt", state.next_dt);
+}
+
+/// How far the stages have come.
+template <class Progress, class Visit>
+void for_each_progress(Progress& all, const Visit& visit) {
+  visit("stage", all.stage);
+  visit("repetition", all.repetition);
+  visit("begun", all.begun);
+  visit("first_step", all.first_step);
+  visit("first_time", all.first_time);
 }
 
 /// The numbers of an energy ledger.

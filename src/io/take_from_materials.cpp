@@ -47,7 +47,7 @@ std::string problem(const ContactRule& rule, const contact::ParameterDescription
 void take_from_materials(SceneDraft& draft, Diagnostics& diagnostics) {
   model::Scene& scene = draft.scene;
   if (std::none_of(scene.contacts.begin(), scene.contacts.end(), is_open)) return;
-  const auto pairs = meeting_pairs(scene);
+  const auto pairs = meeting_pairs(draft);
   std::vector<ContactRule> rules;
   for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
     const ContactRule& rule = scene.contacts[r];

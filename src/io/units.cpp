@@ -31,6 +31,7 @@ constexpr std::array unit_table{
     UnitRow{"h", {{0, 0, 1}, 3600, 0}, "", "hour"},
     UnitRow{"N", {{1, 1, -2}, 1, 0}, "numkMG", "newton"},
     UnitRow{"Pa", {{-1, 1, -2}, 1, 0}, "numkMG", "pascal"},
+    UnitRow{"J", {{2, 1, -2}, 1, 0}, "numkMG", "joule"},
     UnitRow{"rad", {{0, 0, 0}, 1, 0}, "m", "radian, a pure number"},
     UnitRow{"deg", {{0, 0, 0}, std::numbers::pi / 180, 0}, "", "degree, π/180"},
 };
@@ -38,7 +39,7 @@ constexpr std::array unit_table{
 constexpr std::array<std::pair<char, int>, 8> prefix_table{
     {{'n', -9}, {'u', -6}, {'m', -3}, {'c', -2}, {'d', -1}, {'k', 3}, {'M', 6}, {'G', 9}}};
 
-constexpr std::array<std::pair<Dimension, std::string_view>, 13> named_dimensions{{
+constexpr std::array<std::pair<Dimension, std::string_view>, 14> named_dimensions{{
     {{0, 0, 0}, "a pure number"},
     {{1, 0, 0}, "a length"},
     {{2, 0, 0}, "an area"},
@@ -52,6 +53,7 @@ constexpr std::array<std::pair<Dimension, std::string_view>, 13> named_dimension
     {{1, 1, -2}, "a force"},
     {{0, 1, -2}, "a stiffness"},
     {{-1, 1, -2}, "a pressure"},
+    {{2, 1, -2}, "an energy or a moment"},
 }};
 
 /// The ways of writing the same thing that need more than ASCII, in ASCII.

@@ -1,6 +1,7 @@
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
+#include "eigengrain/contact/state_numbers.hpp"
 #include "eigengrain/io/state_file.hpp"
 
 #include "atomic_file.hpp"
@@ -34,6 +35,8 @@ std::size_t largest_size(const assembly::State& state) {
   layout::for_each_clump_column(state.model.bodies.clumps, [&](const char*, const auto& column) {
     size += (1U << 12U) + column.size() * sizeof(column[0]);
   });
+  for (const model::Group& group : state.groups)
+    size += (1U << 14U) + group.balls.size() * sizeof(std::int64_t);
   state.model.contacts.for_each_group([&](const auto& group) {
     size += (1U << 14U) + group.pairs.size() * (sizeof(contact::Pair) + sizeof(group.states[0]));
   });
@@ -91,19 +94,18 @@ template <class Group>
 void write_states(const Group& group, const std::string& path, h5::File& file) {
   using State = typename Group::State;
   if constexpr (!std::is_empty_v<State>) {
-    std::size_t offset = 0;
     std::vector<double> values;
-    for (const contact::StateField& field : Group::LawType::state_fields) {
-      const auto components = static_cast<std::size_t>(field.components);
-      values.resize(components * group.states.size());
-      for (std::size_t c = 0; c < group.states.size(); ++c) {
-        const auto bytes = std::as_bytes(std::span(&group.states[c], 1));
-        std::memcpy(&values[components * c], &bytes[offset], components * sizeof(double));
-      }
-      file.write_rows(fmt::format("{}/{}", path, field.name), h5::Number::f64, values.data(),
-                      group.states.size(), field.components);
-      offset += components * sizeof(double);
-    }
+    contact::for_each_field<typename Group::LawType>(
+        [&](const contact::StateField& field, std::size_t offset) {
+          const auto components = static_cast<std::size_t>(field.components);
+          values.resize(components * group.states.size());
+          for (std::size_t c = 0; c < group.states.size(); ++c) {
+            const auto bytes = std::as_bytes(std::span(&group.states[c], 1));
+            std::memcpy(&values[components * c], &bytes[offset], components * sizeof(double));
+          }
+          file.write_rows(fmt::format("{}/{}", path, field.name), h5::Number::f64, values.data(),
+                          group.states.size(), field.components);
+        });
   }
 }
 
@@ -146,6 +148,25 @@ void write_walls(const assembly::State& state, h5::File& file) {
   file.write(layout::list_wall_lever, state.list.wall_lever);
 }
 
+/// Groups that were made, and how far the stages have come; only where there are any.
+void write_stages(const assembly::State& state, h5::File& file) {
+  if (!state.groups.empty()) file.add_group(layout::groups);
+  for (std::size_t k = 0; k < state.groups.size(); ++k) {
+    const std::string path = fmt::format("{}/{}", layout::groups, k);
+    file.add_group(path);
+    file.set(path, "name", state.groups[k].name);
+    file.write(path + "/balls", state.groups[k].balls);
+  }
+  if (state.settings.stages.empty()) return;
+  file.add_group(layout::progress);
+  layout::for_each_progress(state.progress, [&](const char* name, auto value) {
+    if constexpr (std::is_same_v<decltype(value), double>)
+      file.set(layout::progress, name, value);
+    else
+      file.set(layout::progress, name, static_cast<std::int64_t>(value));
+  });
+}
+
 void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::root, "format", layout::format);
   file.set(layout::root, "schema", layout::schema_of(state));
@@ -165,11 +186,13 @@ void write_contents(const assembly::State& state, h5::File& file) {
     file.add_group(layout::surfaces);
     file.write(layout::surface_fingerprint, fingerprints(state.model.surfaces));
   }
-  if (!state.ledger) return;
-  file.add_group(layout::ledger);
-  layout::for_each_energy(*state.ledger, [&](const std::string& name, double energy) {
-    file.set(layout::ledger, name.c_str(), energy);
-  });
+  if (state.ledger) {
+    file.add_group(layout::ledger);
+    layout::for_each_energy(*state.ledger, [&](const std::string& name, double energy) {
+      file.set(layout::ledger, name.c_str(), energy);
+    });
+  }
+  write_stages(state, file);
 }
 
 }  // namespace

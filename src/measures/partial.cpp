@@ -146,12 +146,4 @@ double line_inside(const model::BoxRegion& box, const Vec3& start, const Vec3& w
   return clipped(from, to);
 }
 
-bool point_inside(const model::SphereRegion& sphere, const Vec3& x) {
-  return (x - sphere.centre).squaredNorm() < sphere.radius * sphere.radius;
-}
-
-bool point_inside(const model::BoxRegion& box, const Vec3& x) {
-  return (x.array() >= box.min.array()).all() && (x.array() < box.max.array()).all();
-}
-
 }  // namespace eigengrain::measures

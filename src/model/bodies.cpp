@@ -60,6 +60,16 @@ double disk_inertia(double radius, double mass) {
   return 0.5 * mass * radius * radius;
 }
 
+void scale_radius(Bodies& bodies, std::size_t row, double factor) {
+  double& mass = bodies.mass[row];
+  // Which of both it is shows in I/mR²: 2/5 or 1/2.
+  const bool disk = bodies.inertia[row] > 0.45 * mass * bodies.radius[row] * bodies.radius[row];
+  bodies.radius[row] *= factor;
+  mass *= disk ? factor * factor : factor * factor * factor;
+  bodies.inertia[row] =
+      disk ? disk_inertia(bodies.radius[row], mass) : sphere_inertia(bodies.radius[row], mass);
+}
+
 Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
   return {.identity = gather(bodies.identity, order),
           .position = gather(bodies.position, order),

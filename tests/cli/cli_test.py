@@ -1,13 +1,13 @@
 """The command line as a user meets it: exit codes, messages, JSON. Usage: cli_test.py PROGRAM EXAMPLES"""
-import json
 import math
 import pathlib
 import subprocess
 import sys
-import tempfile
 import unittest
 
-PROGRAM, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+from program import PROGRAM, ProgramTest
+
+EXAMPLES = pathlib.Path(sys.argv[2])
 HAS_TIMESTEP = "timestep" in subprocess.run([PROGRAM, "--help"], capture_output=True, text=True).stdout
 
 # Two equal frictionless spheres along (1, 1, 1), R = 5 mm, that just overlap.
@@ -27,29 +27,7 @@ balls:
 """
 
 
-class CommandLine(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
-    def scene(self, text):
-        file = self.folder / "scene.yaml"
-        file.write_text(text)
-        return file
-
-    def run_program(self, *arguments):
-        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
-
-    def succeed(self, *arguments):
-        """What the program prints and its JSON; it must succeed."""
-        result = self.folder / "result.json"
-        done = self.run_program(*arguments, "--json", result)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout, json.loads(result.read_text())
-
+class CommandLine(ProgramTest):
     def test_check_says_what_the_model_consists_of(self):
         text, report = self.succeed("check", EXAMPLES / "scenes" / "packing_10k.yaml")
         self.assertIn("25,781 ball-ball, linear", text)

@@ -1,17 +1,16 @@
 #!/usr/bin/env python3
 """`measure` and its tables on the packing of 10,000 balls, against numpy. Arguments: the program, the examples."""
 import csv
-import json
 import math
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import numpy
 
-PROGRAM, EXAMPLES = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
+from program import ProgramTest
+
+EXAMPLES = pathlib.Path(sys.argv[2]).resolve()
 WIDTH = 0.21
 KN, DENSITY, G = 1e5, 2500.0, 9.81
 
@@ -54,25 +53,7 @@ def pairs_that_touch(x, r):
     return numpy.array(pairs)
 
 
-class Measures(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
-    def succeed(self, *arguments):
-        result = self.folder / "result.json"
-        done = subprocess.run([PROGRAM, *map(str, arguments), "--json", result], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout, json.loads(result.read_text())
-
-    def fail(self, *arguments):
-        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 1, done.stdout)
-        return done.stderr
-
+class Measures(ProgramTest):
     def test_contacts_stress_and_porosity_are_those_of_numpy(self):
         x, r = packing()
         pairs = pairs_that_touch(x, r)
@@ -227,7 +208,7 @@ histories: [{{file: table.csv, every: 100, of: [walls, ledger], measures: [floor
         self.assertLess(abs(last["balance error [J]"]), 1e-9 * last["elastic normal [J]"])
 
     def test_mistakes_in_regions_are_explained(self):
-        text = self.fail("measure", EXAMPLES / "scenes" / "packing_10k.yaml", "--region", "sphere: {radius: 1}")
+        text = self.fail_with("measure", EXAMPLES / "scenes" / "packing_10k.yaml", "--region", "sphere: {radius: 1}")
         self.assertIn("--region", text)
         self.assertIn("centre is missing", text)
 

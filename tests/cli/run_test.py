@@ -1,18 +1,16 @@
 #!/usr/bin/env python3
 """`run` and `relax` as a user meets them. Arguments: the program, and whether it has PETSc."""
 import csv
-import json
 import math
 import os
-import pathlib
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-PROGRAM = sys.argv[1]
+from program import PROGRAM, ProgramTest
+
 HAS_PETSC = sys.argv[2] == "ON"
 
 MASS = 4 / 3 * math.pi * 5e-3 ** 3 * 2500
@@ -48,32 +46,8 @@ balls:
 """
 
 
-class Runs(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.folder = pathlib.Path(self._folder.name)
-
-    def tearDown(self):
-        self._folder.cleanup()
-
-    def scene(self, text):
-        file = self.folder / "column.yaml"
-        file.write_text(text)
-        return file
-
-    def program(self, *arguments):
-        return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True)
-
-    def succeed(self, *arguments):
-        result = self.folder / "result.json"
-        done = self.program(*arguments, "--json", result)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done, json.loads(result.read_text())
-
-    def fail(self, *arguments):
-        done = self.program(*arguments)
-        self.assertEqual(done.returncode, 1, done.stdout)
-        return done.stderr
+class Runs(ProgramTest):
+    scene_name = "column.yaml"
 
     def test_a_column_comes_to_rest_under_its_weight(self):
         _, report = self.succeed("run", self.scene(COLUMN + RUN), "--output", self.folder / "out")
@@ -103,12 +77,12 @@ class Runs(unittest.TestCase):
 
     def test_bonds_that_break_are_written_down(self):
         scene = self.scene(CHAIN + "run: {steps: 500}\n")
-        done, report = self.succeed("check", scene)
+        text, report = self.succeed("check", scene)
         self.assertEqual(report["bonds"], 2)
-        self.assertIn("bonds       2 ball-ball, parallel by contacts[0] glass-glass", done.stdout)
-        done, whole = self.succeed("run", scene, "--output", self.folder / "whole")
+        self.assertIn("bonds       2 ball-ball, parallel by contacts[0] glass-glass", text)
+        text, whole = self.succeed("run", scene, "--output", self.folder / "whole")
         self.assertEqual(whole["bonds"], {"intact": 1, "broken": 1})
-        self.assertIn("bonds: 1 intact, 1 broken", done.stdout)
+        self.assertIn("bonds: 1 intact, 1 broken", text)
         with open(self.folder / "whole" / "column-breaks.csv", newline="") as table:
             (row,) = csv.DictReader(table)
         self.assertEqual({int(row["ball a"]), int(row["ball b"])}, {0, 1})
@@ -121,7 +95,7 @@ class Runs(unittest.TestCase):
                          (self.folder / "whole" / "column-breaks.csv").read_text())
 
     def test_a_run_needs_an_end(self):
-        self.assertIn("run.steps=10000", self.fail("run", self.scene(COLUMN), "--output", self.folder))
+        self.assertIn("run.steps=10000", self.fail_with("run", self.scene(COLUMN), "--output", self.folder))
 
     def test_stops_by_time_and_by_balance(self):
         scene = self.scene(COLUMN)
@@ -135,7 +109,7 @@ class Runs(unittest.TestCase):
         # One ball on the floor, 2 sqrt(m/kn) undamped: twice that blows up.
         step = 2.0 * 2 * math.sqrt(MASS / 2e4)
         scene = self.scene(COLUMN + RUN)
-        text = self.fail("run", scene, "--output", self.folder / "out", "--set", "run.steps=100000",
+        text = self.fail_with("run", scene, "--output", self.folder / "out", "--set", "run.steps=100000",
                          "--set", f"timestep={{policy: fixed, dt: {step}}}", "--set", "damping.local=0")
         self.assertIn("WARNING", text)
         self.assertIn("blew up", text)
@@ -143,7 +117,7 @@ class Runs(unittest.TestCase):
         self.assertRegex(text, r"\d\.\d+ times" )
         self.assertIn("last good state: step", text)
         # What was kept opens.
-        self.assertEqual(self.program("check", self.folder / "out" / "column.h5").returncode, 0)
+        self.assertEqual(self.run_program("check", self.folder / "out" / "column.h5").returncode, 0)
 
     def test_an_interrupt_saves_the_state(self):
         scene = self.scene(COLUMN + "run: {steps: 100000000}\n")
@@ -166,18 +140,18 @@ class Runs(unittest.TestCase):
         content = bytearray(state.read_bytes())
         content[len(content) // 2] ^= 1
         state.write_bytes(content)
-        self.assertIn("column.h5", self.fail("run", state))
+        self.assertIn("column.h5", self.fail_with("run", state))
         os.truncate(state, len(content) // 2)
-        self.assertIn("column.h5", self.fail("run", state))
+        self.assertIn("column.h5", self.fail_with("run", state))
 
     def test_folders_that_cannot_be_made_are_named(self):
         (self.folder / "file").write_text("")
-        self.assertIn("--output", self.fail("run", self.scene(COLUMN + RUN), "--output", self.folder / "file" / "x"))
+        self.assertIn("--output", self.fail_with("run", self.scene(COLUMN + RUN), "--output", self.folder / "file" / "x"))
 
     def test_a_blow_up_of_a_contact_that_was_not_there_at_the_start_is_explained(self):
         scene = self.scene(COLUMN.replace("[0, 0, 5 mm]", "[0, 0, 6 mm]").replace("15 mm", "25 mm")
                            .replace("25 mm], radius", "45 mm], radius", 1) + "run: {steps: 100000}\n")
-        text = self.fail("run", scene, "--output", self.folder, "--set", "damping.local=0",
+        text = self.fail_with("run", scene, "--output", self.folder, "--set", "damping.local=0",
                          "--set", f"timestep={{policy: fixed, dt: {3 * 2 * math.sqrt(MASS / 2e4)}}}")
         self.assertIn("blew up", text)
         self.assertNotIn("WARNING", text)
@@ -195,7 +169,7 @@ class Runs(unittest.TestCase):
 
     @unittest.skipUnless(HAS_PETSC, "built without PETSc")
     def test_relax_knows_what_rounding_allows(self):
-        text = self.fail("relax", self.scene(COLUMN), "--output", self.folder, "--tolerance", "1e-15")
+        text = self.fail_with("relax", self.scene(COLUMN), "--output", self.folder, "--tolerance", "1e-15")
         self.assertIn("rounding of positions", text)
 
     @unittest.skipUnless(HAS_PETSC, "built without PETSc")
@@ -223,7 +197,7 @@ class Runs(unittest.TestCase):
     def test_relax_says_when_there_is_no_equilibrium(self):
         # A ball that nothing will ever stop: it falls beside the column.
         scene = self.scene(COLUMN.replace("walls:", "  - {position: [1, 0, 1], radius: 5 mm, material: glass}\nwalls:"))
-        done = self.program("relax", scene, "--output", self.folder, "--max-steps", 2000)
+        done = self.run_program("relax", scene, "--output", self.folder, "--max-steps", 2000)
         self.assertEqual(done.returncode, 1, done.stdout)
         self.assertIn("no equilibrium", done.stderr)
         self.assertIn("1 unsupported", done.stderr)

@@ -37,6 +37,8 @@ struct State {
   double next_dt = 0;                    ///< that the timestep policy chose for the next one, s
   std::vector<BondBreak> breaks{};       ///< bonds that broke, until somebody takes them; not in state files
   std::optional<EnergyLedger> ledger{};  ///< kept only where somebody has begun it (measures/ledger.hpp)
+  std::vector<model::Group> groups{};    ///< that have been made so far
+  model::StageProgress progress{};       ///< where the settings have stages
 
   bool turns() const { return !model.bodies.spin.empty(); }
 };

@@ -19,8 +19,4 @@ double ball_inside(const model::BoxRegion& box, const Vec3& centre, double r);
 double line_inside(const model::SphereRegion& sphere, const Vec3& start, const Vec3& way);
 double line_inside(const model::BoxRegion& box, const Vec3& start, const Vec3& way);
 
-/// Whether a point is inside; boxes are half open, as above.
-bool point_inside(const model::SphereRegion& sphere, const Vec3& x);
-bool point_inside(const model::BoxRegion& box, const Vec3& x);
-
 }  // namespace eigengrain::measures

@@ -32,7 +32,8 @@ class Window {
   void for_each_inside(const Vec3& x, const Visitor& visitor) const {
     for_each_image(x, x, [&](const Vec3& shift) {
       const Vec3 image = x + shift;
-      if (std::visit([&](const auto& shape) { return point_inside(shape, image); }, shape_)) visitor(image);
+      if (std::visit([&](const auto& shape) { return model::contains(shape, image); }, shape_))
+        visitor(image);
     });
   }
 

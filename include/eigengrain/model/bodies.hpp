@@ -22,6 +22,12 @@ class FixedComponents {
   constexpr bool all() const { return bits_ == 63; }
   constexpr bool component(int k) const { return ((bits_ >> k) & 1U) != 0; }
   constexpr void fix(int k) { bits_ = static_cast<std::uint8_t>(bits_ | (1U << k)); }
+  constexpr FixedComponents with(FixedComponents other) const {
+    return FixedComponents(static_cast<std::uint8_t>(bits_ | other.bits_));
+  }
+  constexpr FixedComponents without(FixedComponents other) const {
+    return FixedComponents(static_cast<std::uint8_t>(bits_ & ~other.bits_));
+  }
   friend constexpr bool operator==(FixedComponents, FixedComponents) = default;
 
  private:
@@ -61,6 +67,9 @@ double sphere_inertia(double radius, double mass);
 /// The same of a disk of unit thickness about its axis: m = π R² ρ · 1 m, I = 1/2 m R².
 double disk_mass(double radius, double density);
 double disk_inertia(double radius, double mass);
+
+/// Multiplies the radius of a ball or disk; mass and moment of inertia follow at its density.
+void scale_radius(Bodies& bodies, std::size_t row, double factor);
 
 /// A clump as its balls and mass properties, about the centre of mass and in principal axes.
 struct ClumpShape {

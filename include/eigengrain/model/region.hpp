@@ -26,4 +26,18 @@ struct Region {
   std::variant<WholeRegion, SphereRegion, BoxRegion> shape;
 };
 
+/// Whether a point lies inside; boxes are half open, so that boxes side by side share out every point.
+inline bool contains(const WholeRegion& /*all*/, const Vec3& /*x*/) {
+  return true;
+}
+inline bool contains(const SphereRegion& sphere, const Vec3& x) {
+  return (x - sphere.centre).squaredNorm() < sphere.radius * sphere.radius;
+}
+inline bool contains(const BoxRegion& box, const Vec3& x) {
+  return (x.array() >= box.min.array()).all() && (x.array() < box.max.array()).all();
+}
+inline bool contains(const Region& region, const Vec3& x) {
+  return std::visit([&](const auto& shape) { return contains(shape, x); }, region.shape);
+}
+
 }  // namespace eigengrain::model

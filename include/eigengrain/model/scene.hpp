@@ -4,6 +4,8 @@
 #include "eigengrain/model/bodies.hpp"
 #include "eigengrain/model/material.hpp"
 #include "eigengrain/model/region.hpp"
+#include "eigengrain/model/selection.hpp"
+#include "eigengrain/model/stage.hpp"
 #include "eigengrain/model/surface.hpp"
 #include "eigengrain/model/surroundings.hpp"
 #include "eigengrain/model/wall_motion.hpp"
@@ -35,8 +37,11 @@ struct ContactRule {
   std::vector<double> parameters;
   std::optional<BondRule> bond{};
   std::int32_t entry = 0;  ///< of the scene file's `contacts`, for reports
+  std::string name{};      ///< of an entry that holds only for contacts that a stage gives it; else empty
 
+  bool by_choice() const { return !name.empty(); }
   bool matches(std::int32_t a, std::int32_t b) const {
+    if (by_choice()) return false;
     const auto fits = [](std::int32_t mine, std::int32_t other) {
       return mine == any_material || mine == other;
     };
@@ -50,13 +55,6 @@ struct TimestepChoice {
   TimestepPolicy policy = TimestepPolicy::estimate;
   double safety = 0.8;       ///< fraction of the estimate or bound in use
   std::optional<double> dt;  ///< s, with policy fixed
-};
-
-/// When a run ends: at the first of these; all count from the start of the scene.
-struct RunChoice {
-  std::optional<std::int64_t> steps;
-  std::optional<double> time;        ///< s
-  std::optional<double> unbalanced;  ///< stop below this mean unbalanced ratio
 };
 
 /// A table that a run writes, a line every so many steps.
@@ -94,6 +92,8 @@ struct Scene {
   bool full_levers = false;     ///< levers of balls end at their surface, not at the contact point
   TimestepChoice timestep;
   RunChoice run;
+  std::vector<GroupChoice> groups;  ///< made when the scene starts
+  std::vector<Stage> stages;        ///< instead of `run`
   std::vector<Region> measures;
   std::vector<History> histories;
   OutputChoice outputs;

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "eigengrain/assembly/bond_break.hpp"
+#include "eigengrain/cycle/cycle.hpp"
+#include "eigengrain/cycle/watch.hpp"
+
+#include "goal.hpp"
+#include "input.hpp"
+#include "progress.hpp"
+#include "run_outputs.hpp"
+#include "step_check.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace eigengrain::app {
+
+/// One run of the explicit cycle, from an input to its goal, with all that it writes on the way.
+class ExplicitRun {
+ public:
+  explicit ExplicitRun(Input input);
+
+  /// Ends at the goal or at an interrupt; throws SolverError where the run blows up.
+  void go();
+
+  const assembly::State& state() const { return cycle_.state(); }
+  /// The input for what follows, moved out; the run is over.
+  Input take_input();
+  /// Of the step that the run began with.
+  const StepVerdict& verdict() const { return verdict_; }
+  const Goal& goal() const { return goal_; }
+  const RunOutputs& outputs() const { return outputs_; }
+  std::int64_t steps() const { return state().step - first_step_; }  ///< of this call
+  double seconds() const { return seconds_; }                        ///< of the cycle alone
+  std::int64_t broken() const { return broken_; }                    ///< bonds, in this call
+
+ private:
+  std::vector<assembly::BondBreak> take_breaks();
+  void look();
+  StepVerdict verdict_now() const;
+  void step_to(std::int64_t target);
+  void attend();
+
+  Goal goal_;
+  RunOutputs outputs_;
+  cycle::Cycle cycle_;
+  cycle::Watch watch_;
+  StepVerdict verdict_;
+  Progress progress_;
+  std::string stem_;
+  std::filesystem::path folder_;
+  std::int64_t first_step_;
+  double seconds_ = 0;
+  std::int64_t broken_ = 0;
+};
+
+}  // namespace eigengrain::app

@@ -1,0 +1,69 @@
+#include "goal.hpp"
+
+#include "eigengrain/assembly/energies.hpp"
+#include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/assembly/surroundings.hpp"
+#include "eigengrain/base/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace eigengrain::app {
+namespace {
+
+std::size_t find_wall(const assembly::Model& model, const std::string& name) {
+  const std::vector<std::string> names = assembly::wall_names(model);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw InputError(fmt::format("until: there is no wall \"{}\"", name));
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+}  // namespace
+
+Goal::Goal(const assembly::State& state) : run_(state.settings.run) {
+  if (!state.settings.stages.empty()) {
+    run_ = state.settings.stages[static_cast<std::size_t>(state.progress.stage)].run;
+    first_step_ = state.progress.first_step;
+    start_ = state.progress.first_time;
+  }
+  if (!run_.any())
+    throw InputError(
+        "the scene does not say how far to run; add run: {steps: 10000} to it, or --set run.steps=10000");
+  if (run_.steps) last_step_ = first_step_ + *run_.steps;
+  if (run_.time) end_ = start_ + *run_.time;
+  if (run_.wall_force) wall_ = find_wall(state.model, run_.wall_force->wall);
+}
+
+void Goal::look(const assembly::State& state) {
+  met_ = true;
+  if (run_.unbalanced) {
+    const assembly::Balance balance = assembly::balance_of(state);
+    met_ = balance.unsupported == 0 && balance.bodies > 0 && balance.mean < *run_.unbalanced;
+  }
+  // At the start of a run everything may be about to move.
+  if (met_ && run_.kinetic)
+    met_ = state.step > first_step_ && assembly::energies_of(state).kinetic < *run_.kinetic;
+  if (met_ && run_.wall_force)
+    met_ = assembly::wall_loads(state.model)[wall_].force.norm() >= run_.wall_force->at_least;
+}
+
+std::int64_t Goal::last_step() const {
+  return last_step_.value_or(std::numeric_limits<std::int64_t>::max());
+}
+
+std::string Goal::text_of_missed() const {
+  if (run_.unbalanced && !run_.kinetic && !run_.wall_force)
+    return fmt::format("the unbalanced ratio wished for ({:g}) was not reached", *run_.unbalanced);
+  return "the conditions of `until` did not hold together";
+}
+
+double Goal::fraction(const assembly::State& state) const {
+  double done = -1;
+  if (run_.steps) done = static_cast<double>(state.step - first_step_) / static_cast<double>(*run_.steps);
+  if (run_.time) done = std::max(done, (state.time - start_) / *run_.time);
+  return done;
+}
+
+}  // namespace eigengrain::app
