@@ -90,8 +90,8 @@ void print_policy(const PolicyStep& policy, const Comparison& c) {
 std::string damping_text(const assembly::Model& model) {
   const double alpha = assembly::largest_damping(model);
   if (alpha == 0) return "undamped";
-  return fmt::format("{} local damping {:g}",
-                     model.bodies.damping.empty() ? "with" : "or more: with, for all, the largest", alpha);
+  return model.bodies.damping.empty() ? fmt::format("with local damping {:g}", alpha)
+                                      : fmt::format("with the largest local damping, {:g}, for all", alpha);
 }
 
 void print(const assembly::State& state, const Comparison& c, const PolicyStep& policy) {
