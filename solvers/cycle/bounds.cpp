@@ -151,6 +151,15 @@ double BlockBound::timestep() const {
   return timestep_of(largest);
 }
 
+std::vector<double> BlockBound::eigenvalues() const {
+  std::vector<double> lambda(weight_.size());
+  for_each_index(static_cast<std::int64_t>(lambda.size()), [&](std::int64_t i) {
+    const auto body = static_cast<std::int32_t>(i);
+    lambda[i] = largest_eigenvalue(block(body)) * (1 + rounding(std::ssize(ends_.links(body))));
+  });
+  return lambda;
+}
+
 void BlockBound::sweep() {
   std::vector<double> lambda(weight_.size());
   for_each_index(static_cast<std::int64_t>(lambda.size()), [&](std::int64_t body) {

@@ -6,6 +6,7 @@
 #include "eigengrain/cycle/free_rotation.hpp"
 
 #include "kick.hpp"
+#include "own_properties.hpp"
 
 namespace eigengrain::cycle {
 namespace {
@@ -43,14 +44,15 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
   model::Bodies& bodies = state.model.bodies;
   model::Clumps& clumps = bodies.clumps;
   const auto c = static_cast<std::size_t>(clump);
-  const double damping = state.model.local_damping;
-  const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(clumps.holder(clump))];
+  const auto holder = static_cast<std::size_t>(clumps.holder(clump));
+  const EachItsOwn own(state.model);
+  const double damping = own.damping(holder);
+  const model::FixedComponents fixed = bodies.fixed[holder];
   const Resultant contacts = resultant(state, clump);
 
-  const double mass = clumps.mass[c];
   Vec3& velocity = clumps.velocity[c];
   NoWork none(0, 0);  // scenes with clumps have no ledger
-  kick(velocity, contacts.force + mass * state.model.gravity, mass, duration, damping, fixed.translation(),
+  kick(velocity, contacts.force + own.load(holder), own.mass(holder), duration, damping, fixed.translation(),
        none);
   clumps.position[c] += dt * velocity;
 
@@ -61,8 +63,10 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
     rotation.turn = contact::turned(Quat::Identity(), rotation.theta);
   } else {
     Vec3& momentum = clumps.angular_momentum[c];
-    momentum += duration *
-                damped_moment(contacts.moment, clumps.orientation[c], clumps.inertia[c], momentum, damping);
+    // Of the true mass, also where masses are scaled: then moments are divided by the factor.
+    const double scaled = bodies.mass_factor.empty() ? duration : duration / bodies.mass_factor[holder];
+    momentum += scaled * damped_moment(own.with_applied(holder, contacts.moment), clumps.orientation[c],
+                                       clumps.inertia[c], momentum, damping);
     rotation = rotate_freely(clumps.orientation[c], momentum, clumps.inertia[c], dt);
     clumps.spin[c] = rotation.theta / dt;
   }

@@ -7,7 +7,9 @@
 #include "eigengrain/contact/orientation.hpp"
 
 #include "clump_motion.hpp"
+#include "growth.hpp"
 #include "kick.hpp"
+#include "own_properties.hpp"
 
 #include <fmt/format.h>
 
@@ -45,6 +47,10 @@ double work_on_walls(const std::vector<assembly::WallLoad>& before,
 /// every contact costs accuracy and gains nothing.
 constexpr double worth_a_change = 1.05;
 
+/// While radii change the step is asked for this often, and when they have come to their end: by then masses
+/// are others.
+constexpr std::int64_t steps_between_growing = 20;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -58,7 +64,8 @@ State start(const model::Scene& scene) {
   model::Bodies& bodies = state.model.bodies;
   const auto count = static_cast<std::size_t>(bodies.size());
   if (bodies.velocity.empty()) bodies.velocity.assign(count, Vec3::Zero());
-  if (bodies.spin.empty() && assembly::needs_rotation(scene)) bodies.spin.assign(count, Vec3::Zero());
+  if (bodies.spin.empty() && (assembly::needs_rotation(scene) || !bodies.applied_moment.empty()))
+    bodies.spin.assign(count, Vec3::Zero());
   assembly::begin_list(state);
   assembly::renew_forces(state);
   assembly::make_groups(bodies, scene.groups, state.groups);
@@ -76,11 +83,11 @@ Cycle::Cycle(State state, TimestepPolicy policy)
   if (state_.next_dt == 0) choose_timestep();
 }
 
-template <class Work>
+template <class Work, class Properties>
 double Cycle::move(double duration, double dt) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
-  const double damping = state_.model.local_damping;
+  const Properties own(state_.model);
   const bool clumps = !bodies.clumps.empty();
   if (clumps) move_clumps(state_, duration, dt);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
@@ -92,13 +99,15 @@ double Cycle::move(double duration, double dt) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       if (!clumps || bodies.clumps.of(static_cast<std::int32_t>(i)) == model::Clumps::none) {
         const model::FixedComponents fixed = bodies.fixed[i];
-        const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
-        kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation(), work);
+        const double damping = own.damping(i);
+        const Vec3 force = state_.force[i] + own.load(i);
+        kick(bodies.velocity[i], force, own.mass(i), duration, damping, fixed.translation(), work);
         work.gravity(bodies.mass[i] * state_.model.gravity, bodies.velocity[i]);
         bodies.position[i] += dt * bodies.velocity[i];
         if (state_.turns())
-          kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation(),
-               work);
+          kick(bodies.spin[i], own.with_applied(i, state_.moment[i]), own.moment_of_inertia(i), duration,
+               damping, fixed.rotation(), work);
+        own.count(i, work);
       }
       const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
@@ -119,7 +128,14 @@ void Cycle::list_anew() {
   forces_ = assembly::ContactForceSum(state_.model, state_.turns());
 }
 
+double Cycle::move(double duration, double dt) {
+  if (EachItsOwn::needed(state_.model.bodies))
+    return state_.ledger ? move<KickWork, EachItsOwn>(duration, dt) : move<NoWork, EachItsOwn>(duration, dt);
+  return state_.ledger ? move<KickWork, AllAlike>(duration, dt) : move<NoWork, AllAlike>(duration, dt);
+}
+
 void Cycle::choose_timestep() {
+  if (policy_.prepare) policy_.prepare(state_);
   const double chosen = policy_.dt(state_);
   if (!(chosen > 0) || !std::isfinite(chosen))
     throw InputError(fmt::format(
@@ -137,9 +153,13 @@ void Cycle::step() {
   if (counts_walls) before = assembly::wall_loads(state_.model);
   if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
   const double duration = 0.5 * (state_.dt + dt);
-  const double way = state_.ledger ? move<KickWork>(duration, dt) : move<NoWork>(duration, dt);
-  const bool expired = !(way <= half_skin * half_skin && state_.list.wall_way <= half_skin);
+  Growth growth(state_, dt);
+  const double way = move(duration, dt);
+  growth.apply();
+  const double room = half_skin - state_.list.growth;  // what growth leaves for ways
+  const bool expired = !(room >= 0 && way <= room * room && state_.list.wall_way <= half_skin);
   if (expired) list_anew();
+  growth.count();
 
   model::Bodies& bodies = state_.model.bodies;
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
@@ -161,7 +181,11 @@ void Cycle::step() {
   state_.time += dt;
   ++state_.step;
   if (!forces_.broken().empty()) assembly::note_breaks(state_, forces_.broken());
-  if (expired || (policy_.every > 0 && state_.step % policy_.every == 0)) choose_timestep();
+  const auto due = [&](std::int64_t every) { return every > 0 && state_.step % every == 0; };
+  if (expired || due(policy_.every) ||
+      (growth.any() && (due(steps_between_growing) || !model::radii_change(state_.model.bodies, state_.time,
+                                                                           state_.time + state_.next_dt))))
+    choose_timestep();
 }
 
 }  // namespace eigengrain::cycle

@@ -1,6 +1,7 @@
 #include "first_contact.hpp"
 
 #include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/assembly/stiffness.hpp"
 
 #include <algorithm>
@@ -27,12 +28,12 @@ std::optional<Meeting> lightest_ball(const model::Bodies& bodies, std::span<cons
   std::optional<std::int32_t> found;
   for (const std::int32_t i : rows)
     if (bodies.material[i] == material && bodies.clumps.of(i) == model::Clumps::none &&
-        (!found || bodies.mass[i] < bodies.mass[*found]))
+        (!found || model::inertial_mass(bodies, i) < model::inertial_mass(bodies, *found)))
       found = i;
   if (!found) return std::nullopt;
-  return Meeting{.mass = bodies.mass[*found],
-                 .heavy = bodies.mass[*found],
-                 .inertia = bodies.inertia[*found],
+  return Meeting{.mass = model::inertial_mass(bodies, *found),
+                 .heavy = model::inertial_mass(bodies, *found),
+                 .inertia = model::inertial_moment(bodies, *found),
                  .lever = bodies.radius[*found],
                  .radius = bodies.radius[*found]};
 }
@@ -46,8 +47,9 @@ std::optional<Meeting> any_clump(const model::Bodies& bodies, std::span<const st
   for (const std::int32_t row : rows) {
     const std::int32_t clump = clumps.of(row);
     if (clump == model::Clumps::none || bodies.material[row] != material) continue;
-    const double mass = clumps.mass[clump];
-    const double inertia = clumps.inertia[clump].minCoeff();
+    const double factor = bodies.mass_factor.empty() ? 1.0 : bodies.mass_factor[row];
+    const double mass = factor * clumps.mass[clump];
+    const double inertia = factor * clumps.inertia[clump].minCoeff();
     if (!result)
       result =
           Meeting{.mass = mass, .heavy = mass, .inertia = inertia, .lever = 0, .radius = 0, .radial = false};
@@ -67,21 +69,6 @@ double step_of(double stiffness, double viscosity, double local_damping) {
   const double k = (1 + local_damping) * stiffness;
   const double c = (1 + local_damping) * viscosity;
   return 4 / (c + std::sqrt(c * c + 4 * k));
-}
-
-/// No ball meets another or a wall faster, m/s.
-double fastest_approach(const assembly::State& state) {
-  double ball = 0;
-  for (const Vec3& v : state.model.bodies.velocity) ball = std::max(ball, v.norm());
-  double other = ball;
-  const std::vector<model::WallMotion>& motions = state.model.wall_motions;
-  for (std::size_t m = 0; m < motions.size(); ++m) {
-    const model::WallVelocity velocity = motions[m].at(state.time);
-    const double lever = m < state.list.wall_lever.size() ? state.list.wall_lever[m] : 0.0;
-    const double servo = motions[m].servo ? motions[m].servo->max_speed : 0.0;
-    other = std::max(other, velocity.translation.norm() + lever * velocity.spin.norm() + servo);
-  }
-  return ball + other;
 }
 
 /// Lowers the steps to what the contact of a body by one rule allows.
@@ -115,6 +102,20 @@ void add(const Meeting& body, const model::ContactRule& rule, std::int32_t index
 
 }  // namespace
 
+double fastest_approach(const assembly::State& state) {
+  double ball = 0;
+  for (const Vec3& v : state.model.bodies.velocity) ball = std::max(ball, v.norm());
+  double other = ball;
+  const std::vector<model::WallMotion>& motions = state.model.wall_motions;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const model::WallVelocity velocity = motions[m].at(state.time);
+    const double lever = m < state.list.wall_lever.size() ? state.list.wall_lever[m] : 0.0;
+    const double servo = motions[m].servo ? motions[m].servo->max_speed : 0.0;
+    other = std::max(other, velocity.translation.norm() + lever * velocity.spin.norm() + servo);
+  }
+  return ball + other;
+}
+
 HeadOn head_on(const model::ContactRule& rule, std::int32_t index, double radius, double energy) {
   const contact::AnyGroup group = assembly::new_group(contact::BallBall::name, rule, index);
   return std::visit(
@@ -137,10 +138,11 @@ HeadOn head_on(const model::ContactRule& rule, std::int32_t index, double radius
       group);
 }
 
-FirstContact first_contact(const assembly::State& state, std::span<const std::int32_t> bodies) {
+FirstContact first_contact(const assembly::State& state, std::span<const std::int32_t> bodies,
+                           double approach) {
   FirstContact result;
   const model::Scene& settings = state.settings;
-  const double approach = fastest_approach(state);
+  const double damping = assembly::largest_damping(state.model);
   const auto materials = static_cast<std::int32_t>(settings.materials.size());
   for (std::int32_t a = 0; a < materials; ++a) {
     const auto ball = lightest_ball(state.model.bodies, bodies, a);
@@ -149,7 +151,7 @@ FirstContact first_contact(const assembly::State& state, std::span<const std::in
       const std::int32_t rule = settings.rule_for(a, b);
       if (rule < 0 || settings.contacts[rule].law == "none") continue;
       for (const auto& body : {ball, clump})
-        if (body) add(*body, settings.contacts[rule], rule, approach, state.model.local_damping, result);
+        if (body) add(*body, settings.contacts[rule], rule, approach, damping, result);
     }
   }
   return result;

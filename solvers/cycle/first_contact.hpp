@@ -28,8 +28,12 @@ struct FirstContact {
   double bound = std::numeric_limits<double>::infinity();
 };
 
+/// No ball of a state meets another or a wall faster, m/s.
+double fastest_approach(const assembly::State& state);
+
 /// Of bodies (rows; holders of clumps) that touch nothing yet, for any head-on contact that the rules of the
-/// scene allow; of clumps, wherever on their surface it may be.
-FirstContact first_contact(const assembly::State& state, std::span<const std::int32_t> bodies);
+/// scene allow, at a velocity (m/s); of clumps, wherever on their surface it may be.
+FirstContact first_contact(const assembly::State& state, std::span<const std::int32_t> bodies,
+                           double approach);
 
 }  // namespace eigengrain::cycle

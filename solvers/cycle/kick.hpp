@@ -15,6 +15,7 @@ struct NoWork {
   void free(double /*damping*/, double /*before*/, double /*after*/) {}
   void held(double /*force*/, double /*velocity*/) {}
   void gravity(const Vec3& /*weight*/, const Vec3& /*velocity*/) {}
+  void applied(const Vec3& /*load*/, const Vec3& /*velocity*/) {}
 };
 
 /// The work that a kick decides: half of it over the step behind and half over the step ahead, the way of
@@ -27,6 +28,8 @@ struct KickWork {
   }
   void held(double force, double velocity) { sum.prescribed -= 0.5 * force * (behind + ahead) * velocity; }
   void gravity(const Vec3& weight, const Vec3& velocity) { sum.gravity += ahead * weight.dot(velocity); }
+  /// Of a constant force with a velocity, or a moment with a spin.
+  void applied(const Vec3& load, const Vec3& velocity) { sum.applied += ahead * load.dot(velocity); }
 
   double behind;  ///< s
   double ahead;   ///< s

@@ -1,6 +1,7 @@
 #include "eigengrain/cycle/watch.hpp"
 
 #include "eigengrain/assembly/energies.hpp"
+#include "eigengrain/assembly/loads.hpp"
 
 #include <fmt/format.h>
 
@@ -104,6 +105,7 @@ bool closed(const State& state) {
     if (model.cell.periodic[k] && model.gravity[k] != 0) return false;
   if (!model.wall_motions.empty()) return false;
   const model::Bodies& bodies = model.bodies;
+  if (assembly::has_loads(bodies) || !bodies.ramp.empty() || !bodies.mass_factor.empty()) return false;
   const model::Clumps& clumps = bodies.clumps;
   for (std::int32_t c = 0; c < clumps.size(); ++c)
     for (int k = 0; k < 3; ++k) {

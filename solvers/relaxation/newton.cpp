@@ -4,6 +4,7 @@
 #include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/assembly/loads.hpp"
 #include "eigengrain/assembly/tangent.hpp"
 #include "eigengrain/petsc/session.hpp"
 
@@ -62,19 +63,18 @@ class Equations {
   /// The same of all balls, which those of clumps share.
   const Displacement& moved_balls() const { return clumps().empty() ? moved_ : carried_; }
 
-  /// r(x) = -(contacts + gravity) on the free components.
+  /// r(x) = -(contacts + gravity + applied loads) on the free components.
   void residual(Vec x, Vec r) {
     place(x);
     forces_.evaluate(state_.model, trial(), sum_);
-    gather_clumps();
+    gather_forces();
     const PetscScalar* scale = nullptr;
     PetscScalar* out = nullptr;
     EIGENGRAIN_PETSC(VecGetArrayRead(scale_.get(), &scale));
     EIGENGRAIN_PETSC(VecGetArrayWrite(r, &out));
     for_each_number([&](std::size_t number, std::int32_t body, int k, bool turns, bool fixed) {
       const auto i = static_cast<std::size_t>(body);
-      const double force = turns ? sum_.moment[i][k]
-                                 : sum_.force[i][k] + state_.model.bodies.mass[i] * state_.model.gravity[k];
+      const double force = turns ? sum_.moment[i][k] : sum_.force[i][k];
       out[number] = fixed ? 0.0 : -force * scale[number];
     });
     EIGENGRAIN_PETSC(VecRestoreArrayRead(scale_.get(), &scale));
@@ -145,10 +145,13 @@ class Equations {
  private:
   const model::Clumps& clumps() const { return state_.model.bodies.clumps; }
 
-  /// Forces of balls to those of clumps, moments along their axes.
-  void gather_clumps() {
-    if (clumps().empty()) return;
-    assembly::gather_members(state_.model.bodies, carried_.rotation, sum_);
+  /// Forces of contacts on balls to those on bodies with all loads; moments of clumps along their axes.
+  void gather_forces() {
+    if (!clumps().empty()) assembly::gather_members(state_.model.bodies, carried_.rotation, sum_);
+    for (std::size_t i = 0; i < sum_.force.size(); ++i) sum_.force[i] += assembly::load_on(state_.model, i);
+    if (!state_.model.bodies.applied_moment.empty())
+      for (std::size_t i = 0; i < sum_.moment.size(); ++i)
+        sum_.moment[i] += assembly::moment_on(state_.model, i);
     for (std::int32_t c = 0; c < clumps().size(); ++c) {
       Vec3& moment = sum_.moment[static_cast<std::size_t>(clumps().holder(c))];
       moment = (clumps().orientation[static_cast<std::size_t>(c)].conjugate() * moment).eval();

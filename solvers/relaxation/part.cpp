@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/assembly/loads.hpp"
 #include "eigengrain/base/assert.hpp"
 
 #include <algorithm>
@@ -91,11 +92,12 @@ Movers movers_of(const State& state, double force) {
     const auto i = static_cast<std::size_t>(body);
     const model::FixedComponents fixed = bodies.fixed[i];
     const double push =
-        model::free_part(state.force[i] + bodies.mass[i] * state.model.gravity, fixed.translation()).norm();
-    const double turn =
-        state.turns() ? model::free_part(state.moment[i], fixed.rotation()).norm() / bodies.radius[i] : 0.0;
-    // Nothing touches a body without any force, and gravity takes it along, however light it is.
-    const bool falls = push > 0 && state.force[i].isZero(0);
+        model::free_part(state.force[i] + assembly::load_on(state.model, i), fixed.translation()).norm();
+    const Vec3 moment =
+        state.turns() ? Vec3(state.moment[i] + assembly::moment_on(state.model, i)) : Vec3(Vec3::Zero());
+    const double turn = model::free_part(moment, fixed.rotation()).norm() / bodies.radius[i];
+    // Nothing touches a body without any force, and loads take it along, however light it is.
+    const bool falls = (push > 0 || turn > 0) && state.force[i].isZero(0);
     if (falls || std::max(push, turn) > force) {
       movers.bodies.push_back(body);
     } else {

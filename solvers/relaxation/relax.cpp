@@ -76,6 +76,11 @@ class Relaxation {
     const Clock clock(state_);
     const GivenVelocities given(state_);
     const double damping = std::exchange(state_.model.local_damping, explicit_damping);
+    // What bodies have of their own to move by counts afterwards again: α, masses that are scaled, ramps of
+    // radii.
+    auto own_damping = std::exchange(state_.model.bodies.damping, {});
+    auto mass_factor = std::exchange(state_.model.bodies.mass_factor, {});
+    auto ramp = std::exchange(state_.model.bodies.ramp, {});
     // Walls rest while an equilibrium is sought, and move on afterwards.
     auto motions = std::exchange(state_.model.wall_motions, {});
     auto poses = std::exchange(state_.model.wall_poses, {});
@@ -103,6 +108,9 @@ class Relaxation {
     given.restore(state_);
     clock.restore(state_);
     state_.model.local_damping = damping;
+    state_.model.bodies.damping = std::move(own_damping);
+    state_.model.bodies.mass_factor = std::move(mass_factor);
+    state_.model.bodies.ramp = std::move(ramp);
     state_.model.wall_motions = std::move(motions);
     state_.model.wall_poses = std::move(poses);
     result_.converged = at_rest_within(result_.end, options_.tolerance);
@@ -166,6 +174,7 @@ class Relaxation {
   cycle::TimestepPolicy policy() const {
     model::Scene settings = state_.settings;
     settings.timestep = {model::TimestepPolicy::bound, explicit_safety, {}};
+    settings.mass_scaling.reset();
     return cycle::policy_of(settings);
   }
 

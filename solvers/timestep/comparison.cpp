@@ -1,6 +1,7 @@
 #include "eigengrain/timestep/comparison.hpp"
 
 #include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/bounds.hpp"
 
@@ -32,7 +33,7 @@ Comparison compare(const assembly::Model& model, const TruthOptions& options) {
                     .contacts = static_cast<std::int64_t>(system.elements.size()),
                     .unknowns = static_cast<std::int64_t>(system.unknowns.free_components().size()),
                     .set_aside = static_cast<std::int64_t>(system.unknowns.set_aside().size()),
-                    .truth = critical_timestep(system, model.local_damping, options),
+                    .truth = critical_timestep(system, assembly::largest_damping(model), options),
                     .estimates = {}};
   const auto add = [&](std::string name, bool proven, const auto& compute) {
     result.estimates.push_back(judged(std::move(name), proven, result.truth, compute));

@@ -1,6 +1,7 @@
 #include "step_check.hpp"
 
 #include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/cycle/policy.hpp"
 #ifdef EIGENGRAIN_PETSC
@@ -13,11 +14,11 @@ namespace eigengrain::app {
 
 StepVerdict judge_step(const assembly::State& state, double dt) {
   const assembly::LinearSystem system(state.model);
-  const double damping = state.model.local_damping;
+  const double damping = assembly::largest_damping(state.model);
   StepVerdict verdict{.dt = dt, .limit = cycle::damped_block_bound(system, damping)};
   verdict.safe = dt <= verdict.limit;
-  // With dashpots there is no exact limit to ask for.
-  if (verdict.safe || !system.damping.empty()) return verdict;
+  // With dashpots, or one α for a body and another for the next, there is no exact limit to ask for.
+  if (verdict.safe || !system.damping.empty() || !state.model.bodies.damping.empty()) return verdict;
 #ifdef EIGENGRAIN_PETSC
   verdict.limit = timestep::critical_timestep(system, damping).limit;
   verdict.exact = true;
@@ -29,6 +30,7 @@ StepVerdict judge_step(const assembly::State& state, double dt) {
 StepVerdict judge_first_contacts(const assembly::State& state, double dt) {
   model::Scene settings = state.settings;
   settings.timestep = {model::TimestepPolicy::bound, 1.0, {}};
+  settings.mass_scaling.reset();  // of the masses as they are
   StepVerdict verdict{.dt = dt, .limit = cycle::policy_of(settings).dt(state)};
   verdict.safe = dt <= verdict.limit;
   return verdict;

@@ -1,5 +1,7 @@
 #include "eigengrain/assembly/bonds.hpp"
 #include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/assembly/loads.hpp"
+#include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/assembly/selection.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
@@ -83,7 +85,8 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
   else if (model.wall_motions.empty())
     parts.emplace_back("motion of walls");
   if (scene.gravity.isZero(0)) parts.emplace_back("gravity");
-  if (scene.local_damping == 0) parts.emplace_back("damping");
+  if (!assembly::has_loads(model.bodies)) parts.emplace_back("applied loads");
+  if (assembly::largest_damping(model) == 0) parts.emplace_back("damping");
   if (model.bodies.clumps.empty()) parts.emplace_back("clumps");
   return parts;
 }
@@ -97,7 +100,8 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
   for (const GroupSummary& g : groups)
     parts.push_back(fmt::format("{} {} {}forces", g.kinematics, g.law, g.additive ? "bond " : ""));
   if (!scene.gravity.isZero(0)) parts.emplace_back("gravity");
-  if (scene.local_damping > 0) parts.emplace_back("local damping");
+  if (assembly::has_loads(model.bodies)) parts.emplace_back("applied loads");
+  if (assembly::largest_damping(model) > 0) parts.emplace_back("local damping");
   const auto moves = [](model::FixedComponents fixed) { return fixed.translation() != 7; };
   if (std::any_of(model.bodies.fixed.begin(), model.bodies.fixed.end(), moves))
     parts.emplace_back("translation");
@@ -105,6 +109,8 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
   if (unknowns.rotations() > 0) parts.emplace_back("rotation");
   if (!model.bodies.clumps.empty()) parts.emplace_back("motion of clumps");
   if (!model.bodies.orientation.empty()) parts.emplace_back("orientation");
+  if (!model.bodies.ramp.empty()) parts.emplace_back("growth");
+  if (scene.mass_scaling) parts.emplace_back("mass scaling");
   return parts;
 }
 
@@ -137,9 +143,17 @@ std::string stage_text(const model::Stage& stage) {
   return fmt::format("{}{}{}", stage.name, stage.name.empty() ? "" : ": ", fmt::join(parts, ", "));
 }
 
-void print_settings(const model::Scene& scene) {
+void print_settings(const model::Scene& scene, const model::Bodies& bodies) {
   fmt::print("  damping     local, {:g}\n", scene.local_damping);
-  if (scene.timestep.dt)
+  if (const auto own = std::count_if(bodies.damping.begin(), bodies.damping.end(),
+                                     [](double alpha) { return alpha != model::Bodies::scene_damping; });
+      own > 0)
+    fmt::print("  damping     of their own for {}; the largest counts for the timestep\n",
+               counted(own, "ball", "balls"));
+  if (scene.mass_scaling)
+    fmt::print("  timestep    {:g} s, by {} scaling of masses\n", scene.mass_scaling->dt,
+               model::name_of(scene.mass_scaling->form));
+  else if (scene.timestep.dt)
     fmt::print("  timestep    fixed, {:g} s\n", *scene.timestep.dt);
   else
     fmt::print("  timestep    {}, safety {:g}\n", policy_name(scene.timestep.policy), scene.timestep.safety);
@@ -248,7 +262,7 @@ void print(const Report& report) {
   if (report.set_aside > 0)
     fmt::print("  set aside   {} without acting contacts\n", counted(report.set_aside, "body", "bodies"));
   fmt::print("  passes      {}\n", fmt::join(report.steps, ", "));
-  print_settings(report.scene);
+  print_settings(report.scene, report.model.bodies);
   fmt::print("left out, as nothing here needs it: {}\n",
              report.absent.empty() ? "nothing" : fmt::format("{}", fmt::join(report.absent, ", ")));
   print_notes(report.scene);

@@ -1,3 +1,5 @@
+#include "eigengrain/assembly/local_damping.hpp"
+#include "eigengrain/cycle/mass_scaling.hpp"
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
@@ -29,7 +31,9 @@ struct PolicyStep {
 PolicyStep policy_step(const assembly::State& state) {
   const model::TimestepChoice& choice = state.settings.timestep;
   std::string how = "fixed";
-  if (choice.policy == model::TimestepPolicy::bound)
+  if (state.settings.mass_scaling)
+    how = fmt::format("mass scaling: {:g} of what is proven for all near pairs", choice.safety);
+  else if (choice.policy == model::TimestepPolicy::bound)
     how = fmt::format("bound: {:g} of what is proven for all near pairs", choice.safety);
   else if (choice.policy == model::TimestepPolicy::estimate)
     how = fmt::format("estimate: {:g} of diagonal", choice.safety);
@@ -82,11 +86,22 @@ void print_policy(const PolicyStep& policy, const Comparison& c) {
         c.truth.limit);
 }
 
-void print(const model::Scene& scene, const Comparison& c, const PolicyStep& policy) {
+/// What the limit of the cycle counts with.
+std::string damping_text(const assembly::Model& model) {
+  const double alpha = assembly::largest_damping(model);
+  if (alpha == 0) return "undamped";
+  return model.bodies.damping.empty() ? fmt::format("with local damping {:g}", alpha)
+                                      : fmt::format("with the largest local damping, {:g}, for all", alpha);
+}
+
+void print(const assembly::State& state, const Comparison& c, const PolicyStep& policy) {
+  const model::Scene& scene = state.settings;
   fmt::print("{}: {}, {}, {}\n", scene.name, counted(c.bodies, "ball", "balls"),
              counted(c.contacts, "acting contact", "acting contacts"),
              counted(c.unknowns, "unknown", "unknowns"));
   print_notes(scene);
+  if (scene.mass_scaling)
+    fmt::print("masses are scaled: all that follows is of the scaled system, not of the true one\n");
   if (c.set_aside > 0)
     fmt::print("set aside: {} without acting contacts\n", counted(c.set_aside, "ball", "balls"));
   if (c.unknowns == 0 || !std::isfinite(c.truth.dt)) {
@@ -100,9 +115,8 @@ void print(const model::Scene& scene, const Comparison& c, const PolicyStep& pol
   for (const Estimate& e : c.estimates)
     fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", e.name, e.dt, e.ratio_to_true,
                !e.safe ? "UNSAFE" : (e.proven ? "safe (proven)" : "safe here"), e.seconds, e.products);
-  fmt::print(
-      "{:<20} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit, c.truth.limit / c.truth.dt,
-      scene.local_damping > 0 ? fmt::format("with local damping {:g}", scene.local_damping) : "undamped");
+  fmt::print("{:<20} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit,
+             c.truth.limit / c.truth.dt, damping_text(state.model));
   print_policy(policy, c);
 }
 
@@ -110,13 +124,17 @@ void print(const model::Scene& scene, const Comparison& c, const PolicyStep& pol
 
 void timestep(const Options& options) {
   if (!options.petsc.empty()) petsc::set_options(options.petsc);
-  const assembly::State state = read_input(options).state;
+  assembly::State state = read_input(options).state;
+  if (state.settings.mass_scaling && state.next_dt == 0) cycle::scale_masses(state);
   petsc::start();  // before the clocks of the comparison
   const Comparison comparison = timestep::compare(state.model);
   if (!options.petsc.empty()) petsc::require_options_used();
   const PolicyStep policy = policy_step(state);
-  write_json(options.json, to_json(comparison, policy));
-  print(state.settings, comparison, policy);
+  ordered_json report = to_json(comparison, policy);
+  if (const auto& scaling = state.settings.mass_scaling)
+    report["mass_scaling"] = model::name_of(scaling->form);
+  write_json(options.json, report);
+  print(state, comparison, policy);
 }
 
 }  // namespace eigengrain::app

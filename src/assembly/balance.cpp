@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/acting.hpp"
 #include "eigengrain/assembly/clump_members.hpp"
+#include "eigengrain/assembly/loads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -81,19 +82,22 @@ Balance balance_of(const Model& model, const BodyForces& of_balls) {
     const auto row = static_cast<std::int32_t>(i);
     const model::FixedComponents fixed = bodies.fixed[i];
     if (fixed.all() || bodies.clumps.owner(row) != row) continue;
+    const Vec3 load = load_on(model, i);
+    const Vec3 load_moment = moment_on(model, i);
     if (found.touch[i].contacts == 0) {
-      if (!model::free_part(model.gravity, fixed.translation()).isZero(0)) ++result.unsupported;
+      if (!model::free_part(load, fixed.translation()).isZero(0) ||
+          !model::free_part(load_moment, fixed.rotation()).isZero(0))
+        ++result.unsupported;
       continue;
     }
     ++result.bodies;
-    const double force =
-        model::free_part(contacts.force[i] + bodies.mass[i] * model.gravity, fixed.translation()).norm();
+    const double force = model::free_part(contacts.force[i] + load, fixed.translation()).norm();
     result.mean += force;
     result.max = std::max(result.max, force);
     floor += std::sqrt(found.touch[i].rounding);
     if (contacts.moment.empty()) continue;
     const double moment =
-        model::free_part(contacts.moment[i], fixed.rotation()).norm() / size_of(bodies, row);
+        model::free_part(contacts.moment[i] + load_moment, fixed.rotation()).norm() / size_of(bodies, row);
     result.moment_mean += moment;
     result.moment_max = std::max(result.moment_max, moment);
   }

@@ -467,6 +467,7 @@ void begin_list(State& state) {
   NeighbourList& list = state.list;
   list.position = state.model.bodies.position;
   list.wall_way = 0;
+  list.growth = 0;
   list.wall_lever.clear();
   for (const model::WallPose& pose : state.model.wall_poses) {
     double farthest = 0;

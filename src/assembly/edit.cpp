@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/assembly/loads.hpp"
 #include "eigengrain/assembly/selection.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/contact/facet.hpp"
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <set>
 #include <span>
@@ -43,19 +45,49 @@ Vec3 half_a_step_before(const Vec3& velocity, const Vec3& force, double inertia,
   return velocity - 0.5 * dt / inertia * model::free_part(force, fixed);
 }
 
+/// Sets a value in a column that is there only where some body has need of it.
+template <class T>
+void set_own(std::vector<T>& column, std::size_t rows, std::size_t row, const T& value, const T& no_need) {
+  if (column.empty()) column.assign(rows, no_need);
+  column[row] = value;
+}
+
+/// Loads and local damping, which stand in a row of the bodies.
+void change_own(model::Bodies& bodies, std::size_t row, const model::BodyChange& change) {
+  const std::size_t rows = bodies.position.size();
+  const Vec3 none = Vec3::Zero();
+  if (change.force) set_own(bodies.applied_force, rows, row, *change.force, none);
+  if (change.moment) set_own(bodies.applied_moment, rows, row, *change.moment, none);
+  if (change.damping) set_own(bodies.damping, rows, row, *change.damping, model::Bodies::scene_damping);
+}
+
+void change_radius(State& state, std::int32_t row, const model::BodyChange& change) {
+  model::Bodies& bodies = state.model.bodies;
+  if (!change.radius_by) return;
+  if (change.over == 0) return model::scale_radii(bodies, std::array{row}, *change.radius_by);
+  const auto i = static_cast<std::size_t>(row);
+  if (bodies.ramp.empty()) bodies.ramp.resize(bodies.position.size());
+  bodies.ramp[i] = {.radius = bodies.radius[i],
+                    .mass = bodies.mass[i],
+                    .inertia = bodies.inertia[i],
+                    .factor = *change.radius_by,
+                    .from = state.time,
+                    .over = change.over};
+}
+
 void change_ball(State& state, std::int32_t row, const model::BodyChange& change) {
   model::Bodies& bodies = state.model.bodies;
   const auto i = static_cast<std::size_t>(row);
   bodies.fixed[i] = bodies.fixed[i].with(change.fix).without(change.free);
   const model::FixedComponents fixed = bodies.fixed[i];
+  change_own(bodies, i, change);
+  change_radius(state, row, change);
   if (change.velocity)
-    bodies.velocity[i] =
-        half_a_step_before(*change.velocity, state.force[i] + bodies.mass[i] * state.model.gravity,
-                           bodies.mass[i], state.dt, fixed.translation());
+    bodies.velocity[i] = half_a_step_before(*change.velocity, state.force[i] + load_on(state.model, i),
+                                            model::inertial_mass(bodies, i), state.dt, fixed.translation());
   if (change.spin)
-    bodies.spin[i] =
-        half_a_step_before(*change.spin, state.moment[i], bodies.inertia[i], state.dt, fixed.rotation());
-  if (change.radius_by) model::scale_radius(bodies, i, *change.radius_by);
+    bodies.spin[i] = half_a_step_before(*change.spin, state.moment[i] + moment_on(state.model, i),
+                                        model::inertial_moment(bodies, i), state.dt, fixed.rotation());
 }
 
 void change_clump(State& state, std::int32_t clump, const model::BodyChange& change,
@@ -63,15 +95,16 @@ void change_clump(State& state, std::int32_t clump, const model::BodyChange& cha
   model::Bodies& bodies = state.model.bodies;
   model::Clumps& clumps = bodies.clumps;
   const auto c = static_cast<std::size_t>(clump);
+  const auto holder = static_cast<std::size_t>(clumps.holder(clump));
   if (change.radius_by)
     throw InputError(fmt::format(
         "{}: ball {} belongs to a clump, whose balls keep their size; leave clumps out of the selection",
-        where, bodies.identity[static_cast<std::size_t>(clumps.holder(clump))]));
-  const auto holder = static_cast<std::size_t>(clumps.holder(clump));
+        where, bodies.identity[holder]));
   const model::FixedComponents fixed = bodies.fixed[holder].with(change.fix).without(change.free);
   if (fixed.rotation() != 0 && fixed.rotation() != 7)
     throw InputError(
         fmt::format("{}: rotations of a clump are fixed all or none; name wx, wy and wz", where));
+  change_own(bodies, holder, change);
   if (change.velocity) clumps.velocity[c] = *change.velocity;
   if (change.spin) {
     clumps.spin[c] = *change.spin;
@@ -80,6 +113,7 @@ void change_clump(State& state, std::int32_t clump, const model::BodyChange& cha
   for (const std::int32_t row : clumps.members(clump)) {
     const auto i = static_cast<std::size_t>(row);
     bodies.fixed[i] = fixed;
+    if (change.damping) bodies.damping[i] = *change.damping;
     bodies.velocity[i] = clumps.velocity[c] + clumps.spin[c].cross(bodies.position[i] - clumps.position[c]);
     bodies.spin[i] = clumps.spin[c];
   }
@@ -136,13 +170,13 @@ void append(std::vector<T>& column, std::size_t rows, const std::vector<T>& more
 
 void change_bodies(State& state, const model::BodyChange& change, const std::string& where) {
   const SelectedBodies selection = selected_bodies(state, change.of, where);
-  if (change.spin && !state.turns()) {
+  if ((change.spin || change.moment) && !state.turns()) {
     state.model.bodies.spin.assign(state.model.bodies.position.size(), Vec3::Zero());
     state.moment = state.model.bodies.spin;
   }
   for (const std::int32_t row : selection.rows) change_ball(state, row, change);
   for (const std::int32_t clump : selection.clumps) change_clump(state, clump, change, where);
-  if (change.radius_by) begin_anew(state);
+  if (change.radius_by && change.over == 0) begin_anew(state);
   state.next_dt = 0;
   state.ledger.reset();
 }
@@ -174,6 +208,11 @@ Added add_balls(State& state, const model::Bodies& balls) {
     append(bodies.velocity, there, added.velocity, more, none);
     if (state.turns()) append(bodies.spin, there, added.spin, more, none);
     append(bodies.orientation, there, added.orientation, more, Quat(Quat::Identity()));
+    append(bodies.applied_force, there, added.applied_force, more, none);
+    append(bodies.applied_moment, there, added.applied_moment, more, none);
+    append(bodies.damping, there, added.damping, more, model::Bodies::scene_damping);
+    append(bodies.ramp, there, added.ramp, more, model::RadiusRamp());
+    append(bodies.mass_factor, there, added.mass_factor, more, 1.0);  // until masses are scaled anew
     state.force.resize(there + more, none);
     if (state.turns()) state.moment.resize(there + more, none);
     begin_anew(state);

@@ -11,13 +11,16 @@ std::vector<double> mass_diagonal(const model::Bodies& bodies, const Unknowns& u
   diagonal.reserve(static_cast<std::size_t>(unknowns.size()));
   for (std::int32_t block = 0; block < unknowns.blocks(); ++block) {
     const std::int32_t body = unknowns.body(block);
+    const auto row = static_cast<std::size_t>(body);
     if (unknowns.is_rotation(block) && unknowns.axes(body) != nullptr) {
-      const Vec3& inertia = bodies.clumps.inertia[bodies.clumps.of(body)];
+      const double factor = bodies.mass_factor.empty() ? 1.0 : bodies.mass_factor[row];
+      const Vec3 inertia = factor * bodies.clumps.inertia[bodies.clumps.of(body)];
       diagonal.insert(diagonal.end(), inertia.begin(), inertia.end());
       continue;
     }
     diagonal.insert(diagonal.end(), Unknowns::block_size,
-                    unknowns.is_rotation(block) ? bodies.inertia[body] : bodies.mass[body]);
+                    unknowns.is_rotation(block) ? model::inertial_moment(bodies, row)
+                                                : model::inertial_mass(bodies, row));
   }
   return diagonal;
 }

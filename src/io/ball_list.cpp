@@ -9,13 +9,6 @@
 namespace eigengrain::io {
 namespace {
 
-/// Adds the next row to a column that is there only if some ball needs it; rows before are zero.
-void add_row(std::vector<Vec3>& column, std::int32_t row, const Vec3& value) {
-  if (column.empty() && value == Vec3::Zero()) return;
-  column.resize(static_cast<std::size_t>(row), Vec3::Zero());
-  column.push_back(value);
-}
-
 /// With translation across a plane and rotation about axes in it fixed.
 model::FixedComponents held_in_plane(model::FixedComponents fixed, int normal) {
   fixed.fix(normal);
@@ -34,8 +27,18 @@ void BallList::add(const Vec3& position, double radius, const BallKind& kind, st
                            : model::sphere_mass(radius, density(kind.material));
   const double inertia = disk ? model::disk_inertia(radius, mass) : model::sphere_inertia(radius, mass);
   if (!std::isnormal(inertia) && density(kind.material) > 0) report_size(radius, mass, line);
-  add_row(bodies.velocity, bodies.size(), kind.velocity);
-  add_row(bodies.spin, bodies.size(), kind.spin);
+  const Vec3 none = Vec3::Zero();
+  model::add_row(bodies.velocity, bodies.size(), kind.velocity, none);
+  model::add_row(bodies.spin, bodies.size(), kind.spin, none);
+  model::add_row(bodies.applied_force, bodies.size(), kind.force, none);
+  model::add_row(bodies.applied_moment, bodies.size(), kind.moment, none);
+  model::add_row(bodies.damping, bodies.size(), kind.damping, model::Bodies::scene_damping);
+  model::RadiusRamp ramp = kind.growth.value_or(model::RadiusRamp());
+  ramp.radius = radius;
+  ramp.mass = mass;
+  ramp.inertia = inertia;
+  if (kind.growth && bodies.ramp.empty()) bodies.ramp.resize(bodies.position.size());
+  if (kind.growth || !bodies.ramp.empty()) bodies.ramp.push_back(ramp);
   bodies.identity.push_back(bodies.size());
   bodies.position.push_back(draft_.scene.cell.wrapped(position));
   bodies.radius.push_back(radius);

@@ -7,6 +7,7 @@
 #include "scene_draft.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace eigengrain::io {
@@ -17,6 +18,10 @@ struct BallKind {
   model::FixedComponents fixed;
   Vec3 velocity;  ///< m/s
   Vec3 spin;      ///< rad/s
+  Vec3 force;     ///< applied, N
+  Vec3 moment;    ///< applied, N m
+  double damping = model::Bodies::scene_damping;
+  std::optional<model::RadiusRamp> growth{};  ///< of a radius of its own
 };
 
 /// Adds balls to the draft, and remembers where each stands.

@@ -1,3 +1,5 @@
+#include "eigengrain/assembly/contact_list.hpp"
+
 #include "coincidence.hpp"
 #include "scene_draft.hpp"
 
@@ -7,7 +9,9 @@
 #include <cmath>
 #include <set>
 #include <span>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 namespace eigengrain::io {
 namespace {
@@ -160,11 +164,47 @@ void add_notes(SceneDraft& draft) {
             fmt::format("{} and {} lie in one plane: balls there touch both, so they count twice",
                         scene.walls[first].name, scene.walls[second].name));
   for (const model::Surface& surface : scene.surfaces) note_size(surface, scene);
+  if (scene.mass_scaling)
+    scene.notes.push_back(
+        fmt::format("masses are scaled ({}) so that a step of {:g} s is stable: only the steady state at the "
+                    "end means anything, and times and velocities count in these seconds",
+                    model::name_of(scene.mass_scaling->form), scene.mass_scaling->dt));
 }
 
 void check_scene(const Section& root, const SceneDraft& draft) {
   check_densities(draft, root.diagnostics());
   check_rules(root, draft);
+}
+
+void check_mass_scaling(const Section& root, const SceneDraft& draft) {
+  const model::Scene& scene = draft.scene;
+  if (!scene.mass_scaling) return;
+  if (std::any_of(scene.histories.begin(), scene.histories.end(),
+                  [](const model::History& table) { return table.ledger; }))
+    root.report("mass_scaling",
+                "beside a table of the ledger, which has no meaning there; remove mass_scaling, or leave "
+                "`ledger` out of `histories`");
+  if (root.diagnostics().any()) return;  // a law may be incomplete
+  for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
+    const model::ContactRule& rule = scene.contacts[r];
+    if (rule.law == "none") continue;
+    const contact::AnyGroup group =
+        assembly::new_group(contact::BallBall::name, rule, static_cast<std::int32_t>(r));
+    const bool dashpots = std::visit(
+        [](const auto& g) {
+          if constexpr (contact::asks_rate<typename std::decay_t<decltype(g)>::LawType>)
+            return g.law.damping().normal > 0 || g.law.damping().shear > 0;
+          else
+            return false;
+        },
+        group);
+    if (!dashpots) continue;
+    root.report("mass_scaling",
+                fmt::format("beside the dashpots of contacts[{}], whose velocities have no meaning there; "
+                            "remove mass_scaling, or leave beta_n, beta_s and restitution out",
+                            rule.entry));
+    return;
+  }
 }
 
 void check_placement(const Section& root, const SceneDraft& draft) {

@@ -108,6 +108,12 @@ struct Row<Quat> {
   static_assert(sizeof(Quat) == 4 * sizeof(double));
 };
 template <>
+struct Row<model::RadiusRamp> {
+  static constexpr Number number = Number::f64;
+  static constexpr int components = 6;
+  static_assert(sizeof(model::RadiusRamp) == 6 * sizeof(double));
+};
+template <>
 struct Row<model::Image> {
   static constexpr Number number = Number::i8;
   static constexpr int components = 3;

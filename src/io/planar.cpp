@@ -29,6 +29,29 @@ void check_places(const SceneDraft& draft, int normal, Diagnostics& diagnostics)
   }
 }
 
+/// Loads that the plane would have to bear.
+void check_loads(const SceneDraft& draft, int normal, Diagnostics& diagnostics) {
+  const model::Bodies& balls = draft.scene.bodies;
+  const char axis = axis_names[static_cast<std::size_t>(normal)];
+  for (std::size_t i = 0; i < balls.applied_force.size(); ++i)
+    if (balls.applied_force[i][normal] != 0)
+      diagnostics.add(
+          draft.ball_places.of(static_cast<std::int32_t>(i)),
+          fmt::format("ball {}: a force of {} N along {}, across the plane, where nothing can move; "
+                      "write 0 there",
+                      i, balls.applied_force[i][normal], axis),
+          "force out of the plane");
+  for (std::size_t i = 0; i < balls.applied_moment.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      if (k != normal && balls.applied_moment[i][k] != 0)
+        diagnostics.add(
+            draft.ball_places.of(static_cast<std::int32_t>(i)),
+            fmt::format("ball {}: a moment of {} N m about {}; in a planar scene balls turn about {} alone: "
+                        "write 0 there",
+                        i, balls.applied_moment[i][k], axis_names[static_cast<std::size_t>(k)], axis),
+            "moment out of the plane");
+}
+
 /// Given motions that would never happen, as the components are fixed at them, or would for ever.
 void check_motion(const SceneDraft& draft, int normal, Diagnostics& diagnostics) {
   const model::Bodies& balls = draft.scene.bodies;
@@ -71,6 +94,7 @@ void check_planar(const Section& root, const SceneDraft& draft) {
                             draft.scene.gravity[normal], axis_names[static_cast<std::size_t>(normal)]));
   check_places(draft, normal, root.diagnostics());
   check_motion(draft, normal, root.diagnostics());
+  check_loads(draft, normal, root.diagnostics());
 }
 
 }  // namespace eigengrain::io

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -76,12 +77,27 @@ void read_single(const Section& section, const BallKind& kind, BallList& balls) 
   balls.add(*position, *radius, kind, place.line);
 }
 
+std::optional<model::RadiusRamp> read_growth(const Section& entry) {
+  const auto section = entry.section("growth");
+  if (!section) return std::nullopt;
+  section->check_keys();
+  const auto factor = section->quantity("factor");
+  const auto over = section->quantity("over");
+  const auto from = section->quantity("from");
+  if (!factor || !over || !from || *factor == 1) return std::nullopt;
+  return model::RadiusRamp{.factor = *factor, .from = *from, .over = *over};
+}
+
 void read_entry(const Section& section, SceneDraft& draft, BallList& balls) {
   section.check_keys();
   const BallKind kind{.material = read_material(section, "material", draft.scene),
                       .fixed = read_fixed(section),
                       .velocity = section.vector("velocity").value_or(Vec3::Zero()),
-                      .spin = section.vector("spin").value_or(Vec3::Zero())};
+                      .spin = section.vector("spin").value_or(Vec3::Zero()),
+                      .force = section.vector("force").value_or(Vec3::Zero()),
+                      .moment = section.vector("moment").value_or(Vec3::Zero()),
+                      .damping = read_own_damping(section),
+                      .growth = read_growth(section)};
   const auto& sorts = entry_sorts();
   const auto sort =
       std::find_if(sorts.begin(), sorts.end(), [&](const auto& s) { return section.has(s.key); });
@@ -112,6 +128,11 @@ model::FixedComponents read_fixed(const Section& section, std::string_view key) 
       if (components[k] == word) fixed.fix(k);
   }
   return fixed;
+}
+
+double read_own_damping(const Section& section) {
+  return section.has("damping") ? section.quantity("damping").value_or(model::Bodies::scene_damping)
+                                : model::Bodies::scene_damping;
 }
 
 Place BallPlaces::of(std::int32_t ball) const {

@@ -109,7 +109,8 @@ std::optional<Properties> properties_of(const Section& entry, const Shape& balls
 
 class Instances {
  public:
-  Instances(SceneDraft& draft, std::int32_t material) : draft_(draft), material_(material) {}
+  Instances(SceneDraft& draft, std::int32_t material, double damping)
+      : draft_(draft), material_(material), damping_(damping) {}
 
   void add(const Section& section, const Properties& body) {
     section.check_keys();
@@ -118,8 +119,10 @@ class Instances {
     const auto angle = section.quantity("angle");
     const auto velocity = section.vector("velocity");
     const auto spin = section.vector("spin");
+    const auto force = section.vector("force");
+    const auto moment = section.vector("moment");
     const auto fixed = read_fixed_whole(section);
-    if (!position || !axis || !angle || !velocity || !spin || !fixed) return;
+    if (!position || !axis || !angle || !velocity || !spin || !force || !moment || !fixed) return;
     if (!(axis->norm() > 0)) {
       section.report("axis", "[0, 0, 0] has no direction; give e.g. [0, 0, 1]");
       return;
@@ -130,7 +133,10 @@ class Instances {
                             .velocity = *velocity,
                             .spin = *spin,
                             .material = material_,
-                            .fixed = *fixed};
+                            .fixed = *fixed,
+                            .force = *force,
+                            .moment = *moment,
+                            .damping = damping_};
     model::add_clump(draft_.scene.bodies, body.shape, start);
     note_place(section.place(), body.shape.place.size());
   }
@@ -154,9 +160,15 @@ class Instances {
 
   SceneDraft& draft_;
   std::int32_t material_;
+  double damping_;
 };
 
 void read_entry(const Section& entry, SceneDraft& draft) {
+  if (entry.has("growth"))
+    return entry.report(
+        "growth",
+        "of a clump; only the radii of single balls change. Leave it out, or make the body of "
+        "balls with bonds");
   entry.check_keys();
   const std::int32_t material = read_material(entry, "material", draft.scene);
   const auto shape = read_shape(entry);
@@ -174,7 +186,7 @@ void read_entry(const Section& entry, SceneDraft& draft) {
         fmt::format("a mass of {} kg and moments down to {} kg m2 are no sizes for numbers; are "
                     "the units right?",
                     body->shape.mass, body->shape.inertia.minCoeff()));
-  Instances instances(draft, material);
+  Instances instances(draft, material, read_own_damping(entry));
   for (const Section& section : sections) instances.add(section, *body);
 }
 

@@ -61,6 +61,20 @@ void read_timestep(const Section& root, SceneDraft& draft) {
         "dt", fmt::format("has no meaning with policy {}; write \"policy: fixed\" or remove dt", *policy));
 }
 
+void read_mass_scaling(const Section& root, SceneDraft& draft) {
+  const auto section = root.section("mass_scaling");
+  if (!section) return;
+  section->check_keys();
+  const auto form = section->text("form");
+  const auto dt = section->quantity("dt");
+  if (!form || !dt || *form == "none") return;
+  using enum model::MassScaling::Form;
+  draft.scene.mass_scaling =
+      model::MassScaling{.form = *form == "uniform" ? uniform : differential, .dt = *dt};
+  if (draft.scene.timestep.policy == model::TimestepPolicy::fixed)
+    section->report("dt", "beside a timestep of policy fixed, which has another dt; remove one of the two");
+}
+
 namespace {
 
 std::optional<model::WallForceGoal> read_wall_force(const Section& section, const SceneDraft& draft) {

@@ -71,6 +71,34 @@ void check_group(const Section& section, const std::string& name, const std::vec
                                    fmt::join(known, ", ")));
 }
 
+/// In a planar scene what moves a ball out of the plane, or lets it go, is a mistake.
+void check_stays_in_plane(const Section& section, const model::BodyChange& change, int normal) {
+  const char axis = "xyz"[normal];
+  const auto check_along = [&](const char* key, const std::optional<Vec3>& v) {
+    if (v && (*v)[normal] != 0)
+      section.report(key, fmt::format("{} along {} leaves the plane; write 0 there", (*v)[normal], axis));
+  };
+  const auto check_about = [&](const char* key, const std::optional<Vec3>& w) {
+    for (int k = 0; w && k < 3; ++k)
+      if (k != normal && (*w)[k] != 0)
+        section.report(key,
+                       fmt::format("{} about {}; in a planar scene balls turn about {} alone: write 0 there",
+                                   (*w)[k], "xyz"[k], axis));
+  };
+  check_along("velocity", change.velocity);
+  check_along("force", change.force);
+  check_about("spin", change.spin);
+  check_about("moment", change.moment);
+  for (int k = 0; k < 3; ++k)
+    if ((k == normal && change.free.component(k)) || (k != normal && change.free.component(3 + k))) {
+      section.report("free",
+                     fmt::format("in a planar scene balls have three free components, x and y in the plane "
+                                 "and the rotation about {}; name those only",
+                                 axis));
+      break;
+    }
+}
+
 model::BodyChange read_change(const Section& section, const SceneDraft& draft,
                               const std::vector<std::string>& groups) {
   section.check_keys();
@@ -79,14 +107,22 @@ model::BodyChange read_change(const Section& section, const SceneDraft& draft,
                            .free = read_fixed(section, "free"),
                            .velocity = section.vector("velocity"),
                            .spin = section.vector("spin"),
-                           .radius_by = section.quantity("radius_by")};
+                           .force = section.vector("force"),
+                           .moment = section.vector("moment"),
+                           .damping = section.quantity("damping"),
+                           .radius_by = section.quantity("radius_by"),
+                           .over = section.quantity("over").value_or(0)};
   if (section.has("group"))
     if ((change.of.group = section.text("group"))) check_group(section, *change.of.group, groups);
-  if (change.fix.bits() == 0 && change.free.bits() == 0 && !section.has("velocity") && !section.has("spin") &&
-      !section.has("radius_by"))
+  constexpr std::array<std::string_view, 8> changes{"fix",   "free",   "velocity", "spin",
+                                                    "force", "moment", "damping",  "radius_by"};
+  if (std::none_of(changes.begin(), changes.end(), [&](std::string_view key) { return section.has(key); }))
     section.report("changes nothing; add e.g. \"fix: [x]\" or \"velocity: [0, 0, 1]\", or remove the entry");
   if ((change.fix.bits() & change.free.bits()) != 0)
     section.report("free", "a component cannot be fixed and freed at once; name it once");
+  if (section.has("over") && !section.has("radius_by"))
+    section.report("over", "says how long a radius grows; add e.g. \"radius_by: 1.05\", or remove it");
+  if (draft.planar) check_stays_in_plane(section, change, draft.planar->normal);
   return change;
 }
 

@@ -71,6 +71,29 @@ bool finite(const Vec3& x) {
   return std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
 }
 
+/// Numbers that the cycle would divide by, or that would let it run away.
+void check_own_columns(const model::Bodies& bodies) {
+  const auto require = [&](bool sound, std::size_t i, const char* what) {
+    if (!sound) throw h5::Error(fmt::format("the {} of ball {} makes no sense", what, bodies.identity[i]));
+  };
+  for (std::size_t i = 0; i < bodies.applied_force.size(); ++i)
+    require(finite(bodies.applied_force[i]), i, "force");
+  for (std::size_t i = 0; i < bodies.applied_moment.size(); ++i)
+    require(finite(bodies.applied_moment[i]), i, "moment");
+  for (std::size_t i = 0; i < bodies.damping.size(); ++i) {
+    const double alpha = bodies.damping[i];
+    require(alpha == model::Bodies::scene_damping || (alpha >= 0 && alpha < 1), i, "damping");
+  }
+  for (std::size_t i = 0; i < bodies.mass_factor.size(); ++i)
+    require(bodies.mass_factor[i] > 0 && std::isfinite(bodies.mass_factor[i]), i, "mass factor");
+  for (std::size_t i = 0; i < bodies.ramp.size(); ++i) {
+    const model::RadiusRamp& ramp = bodies.ramp[i];
+    require(ramp.factor > 0 && ramp.over > 0 && std::isfinite(ramp.factor) && std::isfinite(ramp.from) &&
+                (ramp.factor == 1 || (ramp.radius > 0 && ramp.mass > 0 && ramp.inertia > 0)),
+            i, "growth");
+  }
+}
+
 void read_bodies(const h5::File& hdf5, assembly::State& state) {
   const std::size_t count = hdf5.rows(layout::position);
   layout::for_each_column(state, [&](const std::string& path, auto& column) {
@@ -80,6 +103,10 @@ void read_bodies(const h5::File& hdf5, assembly::State& state) {
   if (hdf5.has(layout::spin)) bodies.spin = hdf5.read<Vec3>(layout::spin, count);
   if (hdf5.has(layout::orientation)) bodies.orientation = hdf5.read<Quat>(layout::orientation, count);
   if (hdf5.has(layout::moment)) state.moment = hdf5.read<Vec3>(layout::moment, count);
+  layout::for_each_own_column(bodies, [&](const std::string& path, auto& column) {
+    if (hdf5.has(path)) column = hdf5.read<typename std::decay_t<decltype(column)>::value_type>(path, count);
+  });
+  check_own_columns(bodies);
   for (std::size_t i = 0; i < count; ++i) {
     if (!finite(bodies.position[i]))
       throw h5::Error(fmt::format("the position of ball {} is not finite", bodies.identity[i]));
@@ -133,6 +160,7 @@ void read_clumps(const h5::File& hdf5, assembly::State& state) {
 void read_list(const h5::File& hdf5, assembly::State& state) {
   state.list.skin = hdf5.number(layout::list, "skin");
   state.list.rebuilds = hdf5.integer(layout::list, "rebuilds");
+  if (hdf5.has_attribute(layout::list, "growth")) state.list.growth = hdf5.number(layout::list, "growth");
   const std::size_t rows = hdf5.rows(layout::list_position);
   state.list.position =
       hdf5.read<Vec3>(layout::list_position, rows == 0 ? 0 : state.model.bodies.position.size());
@@ -203,6 +231,33 @@ void read_progress(const h5::File& hdf5, assembly::State& state) {
   });
 }
 
+bool scaling_changed(const model::Scene& stored, const model::Scene& now) {
+  const auto& then = stored.mass_scaling;
+  if (then.has_value() != now.mass_scaling.has_value()) return true;
+  return then && (then->form != now.mass_scaling->form || then->dt != now.mass_scaling->dt);
+}
+
+/// With other inertial masses time runs otherwise, and what moves freely has velocities that mean nothing: it
+/// starts from rest, with the true masses until the cycle chooses. What is prescribed goes on.
+void begin_other_masses(assembly::State& state) {
+  model::Bodies& bodies = state.model.bodies;
+  bodies.mass_factor.clear();
+  state.dt = 0;
+  state.next_dt = 0;
+  const auto stop = [](Vec3& v, std::uint8_t fixed) { v -= model::free_part(v, fixed); };
+  for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
+    stop(bodies.velocity[i], bodies.fixed[i].translation());
+  for (std::size_t i = 0; i < bodies.spin.size(); ++i) stop(bodies.spin[i], bodies.fixed[i].rotation());
+  model::Clumps& clumps = bodies.clumps;
+  for (std::int32_t c = 0; c < clumps.size(); ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(clumps.holder(c))];
+    stop(clumps.velocity[k], fixed.translation());
+    stop(clumps.spin[k], fixed.rotation());
+    clumps.angular_momentum[k] = model::angular_momentum(clumps, c, clumps.spin[k]);
+  }
+}
+
 model::Scene read_settings(const std::string& document, const fs::path& file,
                            std::span<const std::string> overrides, const model::Bodies& bodies) {
   return read_settings_text(document, file.parent_path(), file.string() + ", settings", overrides,
@@ -235,6 +290,7 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());
   if (surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings))
     assembly::renew_list(state, state.list.skin);
+  if (scaling_changed(stored, state.settings)) begin_other_masses(state);
   // Friction that comes on lets balls turn that could not before.
   if (state.model.bodies.spin.empty() && !assembly::needs_rotation(stored) &&
       assembly::needs_rotation(state.settings)) {

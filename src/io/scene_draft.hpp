@@ -64,6 +64,8 @@ void read_walls(const Section& root, SceneDraft& draft);
 void read_gravity(const Section& root, SceneDraft& draft);
 void read_damping(const Section& root, SceneDraft& draft);
 void read_timestep(const Section& root, SceneDraft& draft);
+/// After read_timestep.
+void read_mass_scaling(const Section& root, SceneDraft& draft);
 void read_run(const Section& root, SceneDraft& draft);
 /// After read_walls.
 void read_stages(const Section& root, SceneDraft& draft);
@@ -103,6 +105,9 @@ void check_placement(const Section& root, const SceneDraft& draft);
 
 /// Whether a planar scene is one: balls in one plane, nothing that drives them out of it.
 void check_planar(const Section& root, const SceneDraft& draft);
+
+/// Whether what masses may not be scaled with is absent: dashpots, a ledger. After take_from_materials.
+void check_mass_scaling(const Section& root, const SceneDraft& draft);
 
 /// Adds to the scene's notes what is odd, though it is no mistake: walls that coincide.
 void add_notes(SceneDraft& draft);

@@ -93,6 +93,28 @@ std::vector<KeyDescription> run_keys() {
        .example = "10 us",
        .description = "the timestep; needed with policy `fixed`, and only there"},
 
+      {.path = "mass_scaling",
+       .kind = section,
+       .example = "{form: differential, dt: 1 s}",
+       .description =
+           "inertial masses (not weights) chosen so that `dt` is stable, for fewer steps to a static "
+           "solution; only the steady state at the end means anything"},
+      {.path = "mass_scaling.form",
+       .kind = word,
+       .fallback = "differential",
+       .words = {"differential", "uniform", "none"},
+       .example = "differential",
+       .description =
+           "`differential`: of each body for itself; `uniform`: of all by one factor; `none`: the true "
+           "masses, for `--set`"},
+      {.path = "mass_scaling.dt",
+       .kind = quantity,
+       .unit = "s",
+       .range = positive_range,
+       .required = true,
+       .example = "1 s",
+       .description = "the step; it is `timestep.safety` times one that is proven stable"},
+
   };
   const std::vector<KeyDescription> end = end_of_run_keys("run", "scene");
   keys.insert(keys.end(), end.begin(), end.end());

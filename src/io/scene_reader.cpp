@@ -30,6 +30,7 @@ void read_sections(const Section& root, SceneDraft& draft, const TakeBalls& take
   read_walls(root, draft);
   read_damping(root, draft);
   read_timestep(root, draft);
+  read_mass_scaling(root, draft);
   read_run(root, draft);
   read_stages(root, draft);
   read_measures(root, draft);
@@ -125,6 +126,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   check_scene(root, draft);
   check_planar(root, draft);
   take_from_materials(draft, diagnostics);
+  check_mass_scaling(root, draft);
   check_placement(root, draft);
   diagnostics.throw_if_any();
   check_stages(root, draft, draft.scene.document);
@@ -154,6 +156,7 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
   });
   check_scene(root, draft);
   take_from_materials(draft, diagnostics);
+  check_mass_scaling(root, draft);
   diagnostics.throw_if_any();
   add_notes(draft);
   draft.scene.bodies = {};

@@ -15,13 +15,28 @@ namespace eigengrain::io::layout {
 
 inline constexpr std::string_view format = "eigengrain state";
 /// Grows with every change after which an old reader would misunderstand a file.
-inline constexpr std::int64_t schema = 2;
+inline constexpr std::int64_t schema = 3;
 inline constexpr std::int64_t oldest_schema = 1;
 
+/// The columns of bodies that are there only where some body has need of them, and that older programs do not
+/// know.
+template <class Bodies, class Visit>
+void for_each_own_column(Bodies& balls, const Visit& visit) {
+  visit("/bodies/applied_force", balls.applied_force);
+  visit("/bodies/applied_moment", balls.applied_moment);
+  visit("/bodies/damping", balls.damping);
+  visit("/bodies/ramp", balls.ramp);
+  visit("/bodies/mass_factor", balls.mass_factor);
+}
+
 /// The least schema that says all of a state, so that older programs read what they understand: 2 with
-/// clumps.
+/// clumps, 3 where bodies have loads, an α, a ramp of the radius or an inertial mass of their own.
 inline std::int64_t schema_of(const assembly::State& state) {
-  return state.model.bodies.clumps.empty() ? oldest_schema : schema;
+  bool own = false;
+  for_each_own_column(state.model.bodies,
+                      [&](const char* /*path*/, const auto& column) { own = own || !column.empty(); });
+  if (own) return 3;
+  return state.model.bodies.clumps.empty() ? oldest_schema : 2;
 }
 
 inline const std::string root = "/";

@@ -32,6 +32,9 @@ std::size_t largest_size(const assembly::State& state) {
   constexpr std::size_t body =
       sizeof(std::int64_t) + 7 * sizeof(Vec3) + 3 * sizeof(double) + sizeof(Quat) + 8;
   std::size_t size = (1U << 20U) + state.settings.document.size() + body * state.model.bodies.position.size();
+  layout::for_each_own_column(state.model.bodies, [&](const char*, const auto& column) {
+    size += (1U << 12U) + column.size() * (column.empty() ? 0 : sizeof(column[0]));
+  });
   layout::for_each_clump_column(state.model.bodies.clumps, [&](const char*, const auto& column) {
     size += (1U << 12U) + column.size() * sizeof(column[0]);
   });
@@ -60,6 +63,10 @@ void write_bodies(const assembly::State& state, h5::File& file) {
   if (!state.model.bodies.orientation.empty())
     file.write(layout::orientation, state.model.bodies.orientation);
   if (!state.moment.empty()) file.write(layout::moment, state.moment);
+  layout::for_each_own_column(state.model.bodies, [&](const std::string& path, const auto& column) {
+    EIGENGRAIN_ASSERT(column.empty() || column.size() == state.model.bodies.position.size(), path);
+    if (!column.empty()) file.write(path, column);
+  });
 }
 
 void write_clumps(const model::Clumps& clumps, h5::File& file) {
@@ -180,6 +187,7 @@ void write_contents(const assembly::State& state, h5::File& file) {
   file.add_group(layout::list);
   file.set(layout::list, "skin", state.list.skin);
   file.set(layout::list, "rebuilds", state.list.rebuilds);
+  if (!state.model.bodies.ramp.empty()) file.set(layout::list, "growth", state.list.growth);
   file.write(layout::list_position, state.list.position);
   write_walls(state, file);
   if (!state.model.surfaces.empty()) {

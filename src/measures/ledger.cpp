@@ -1,5 +1,6 @@
 #include "eigengrain/measures/ledger.hpp"
 
+#include "eigengrain/assembly/loads.hpp"
 #include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/error.hpp"
@@ -43,16 +44,17 @@ struct Motion {
 
 Motion motion_of(const State& state) {
   const model::Bodies& bodies = state.model.bodies;
-  const double alpha = state.model.local_damping;
   std::vector<Motion> parts(static_cast<std::size_t>((bodies.size() + chunk_size - 1) / chunk_size));
   for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     Motion& part = parts[chunk];
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       const model::FixedComponents fixed = bodies.fixed[i];
-      const Vec3 force = state.force[i] + bodies.mass[i] * state.model.gravity;
+      const double alpha = assembly::damping_of(state.model, i);
+      const Vec3 force = state.force[i] + assembly::load_on(state.model, i);
       part.add(bodies.velocity[i], force, bodies.mass[i], state.dt, alpha, fixed.translation());
       if (state.turns())
-        part.add(bodies.spin[i], state.moment[i], bodies.inertia[i], state.dt, alpha, fixed.rotation());
+        part.add(bodies.spin[i], state.moment[i] + assembly::moment_on(state.model, i), bodies.inertia[i],
+                 state.dt, alpha, fixed.rotation());
     }
   });
   Motion sum;
@@ -157,6 +159,10 @@ void begin_ledger(State& state) {
     throw InputError(
         "histories: the ledger does not count the work on clumps; leave `ledger` out of what the table holds "
         "(`energies` has their kinetic energy)");
+  if (state.settings.mass_scaling)
+    throw InputError(
+        "histories: a ledger has no meaning where masses are scaled; leave `ledger` out of what the table "
+        "holds, or remove mass_scaling");
   const Motion motion = motion_of(state);
   const ElasticEnergy elastic = elastic_energy(state.model);
   assembly::EnergyLedger ledger{.initial = motion.kinetic + elastic.total()};

@@ -1,6 +1,9 @@
 #include "eigengrain/model/bodies.hpp"
 
+#include "eigengrain/base/assert.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -42,7 +45,55 @@ Clumps with_rows_moved(const Clumps& clumps, std::span<const std::int32_t> order
   return result;
 }
 
+/// A disk as against a sphere: their moments are 1/2 and 2/5 m R².
+bool is_disk(double radius, double mass, double inertia) {
+  return inertia > 0.45 * mass * radius * radius;
+}
+
+/// Mass and moment of a ball whose radius is s times that at first.
+void set_size(const RadiusRamp& first, double s, double& radius, double& mass, double& inertia) {
+  const bool disk = is_disk(first.radius, first.mass, first.inertia);
+  const double mass_scale = disk ? s * s : s * s * s;
+  radius = s * first.radius;
+  mass = mass_scale * first.mass;
+  inertia = mass_scale * s * s * first.inertia;
+}
+
 }  // namespace
+
+double RadiusRamp::scale(double time) const {
+  return 1 + (factor - 1) * std::clamp((time - from) / over, 0.0, 1.0);
+}
+
+void scale_radii(Bodies& bodies, std::span<const std::int32_t> rows, double factor) {
+  for (const std::int32_t row : rows) {
+    const auto i = static_cast<std::size_t>(row);
+    EIGENGRAIN_ASSERT(bodies.clumps.of(row) == Clumps::none && factor > 0, row, factor);
+    const RadiusRamp now{.radius = bodies.radius[i], .mass = bodies.mass[i], .inertia = bodies.inertia[i]};
+    set_size(now, factor, bodies.radius[i], bodies.mass[i], bodies.inertia[i]);
+    if (bodies.ramp.empty()) continue;
+    RadiusRamp& ramp = bodies.ramp[i];
+    const RadiusRamp first = ramp;
+    set_size(first, factor, ramp.radius, ramp.mass, ramp.inertia);
+  }
+}
+
+double set_radii(Bodies& bodies, double time) {
+  double greatest = 0;
+  for (std::size_t i = 0; i < bodies.ramp.size(); ++i) {
+    const RadiusRamp& ramp = bodies.ramp[i];
+    if (ramp.factor == 1) continue;
+    const double before = bodies.radius[i];
+    set_size(ramp, ramp.scale(time), bodies.radius[i], bodies.mass[i], bodies.inertia[i]);
+    greatest = std::max(greatest, std::abs(bodies.radius[i] - before));
+  }
+  return greatest;
+}
+
+bool radii_change(const Bodies& bodies, double begin, double end) {
+  return std::any_of(bodies.ramp.begin(), bodies.ramp.end(),
+                     [&](const RadiusRamp& ramp) { return ramp.scale(begin) != ramp.scale(end); });
+}
 
 double sphere_mass(double radius, double density) {
   return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius * density;
@@ -60,16 +111,6 @@ double disk_inertia(double radius, double mass) {
   return 0.5 * mass * radius * radius;
 }
 
-void scale_radius(Bodies& bodies, std::size_t row, double factor) {
-  double& mass = bodies.mass[row];
-  // Which of both it is shows in I/mR²: 2/5 or 1/2.
-  const bool disk = bodies.inertia[row] > 0.45 * mass * bodies.radius[row] * bodies.radius[row];
-  bodies.radius[row] *= factor;
-  mass *= disk ? factor * factor : factor * factor * factor;
-  bodies.inertia[row] =
-      disk ? disk_inertia(bodies.radius[row], mass) : sphere_inertia(bodies.radius[row], mass);
-}
-
 Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
   return {.identity = gather(bodies.identity, order),
           .position = gather(bodies.position, order),
@@ -81,6 +122,11 @@ Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
           .velocity = gather(bodies.velocity, order),
           .spin = gather(bodies.spin, order),
           .orientation = gather(bodies.orientation, order),
+          .applied_force = gather(bodies.applied_force, order),
+          .applied_moment = gather(bodies.applied_moment, order),
+          .damping = gather(bodies.damping, order),
+          .ramp = gather(bodies.ramp, order),
+          .mass_factor = gather(bodies.mass_factor, order),
           .clumps = with_rows_moved(bodies.clumps, order)};
 }
 

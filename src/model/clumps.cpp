@@ -50,7 +50,13 @@ void add_clump(Bodies& bodies, const ClumpShape& shape, const ClumpStart& start)
   bodies.velocity.resize(bodies.position.size(), Vec3::Zero());
   bodies.spin.resize(bodies.position.size(), Vec3::Zero());
   clumps.of_row.resize(bodies.position.size(), Clumps::none);
+  const Vec3 none = Vec3::Zero();
   for (std::size_t k = 0; k < shape.place.size(); ++k) {
+    const bool holds = k == 0;  // the row in whose name the clump is loaded
+    add_row(bodies.applied_force, bodies.size(), holds ? start.force : none, none);
+    add_row(bodies.applied_moment, bodies.size(), holds ? start.moment : none, none);
+    add_row(bodies.damping, bodies.size(), start.damping, Bodies::scene_damping);
+    if (!bodies.ramp.empty()) bodies.ramp.emplace_back();
     const Vec3 lever = start.orientation * shape.place[k];
     clumps.member.push_back(bodies.size());
     clumps.place.push_back(shape.place[k]);

@@ -147,6 +147,16 @@ balls: [{lattice: sc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03
         self.assertTrue(report["policy"]["safe"])
 
     @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_timestep_says_that_masses_are_scaled(self):
+        text, report = self.succeed("timestep", self.scene(PAIR), "--set", "mass_scaling={dt: 2 s}",
+                                    "--set", "damping.local=0")
+        self.assertIn("masses are scaled: all that follows is of the scaled system", text)
+        self.assertEqual(report["mass_scaling"], "differential")
+        self.assertEqual(report["policy"]["dt"], 2)
+        # One spring and no friction: the block is the whole truth, and 2 s is 0.8 of it.
+        self.assertAlmostEqual(report["policy"]["ratio_to_limit"], 0.8, delta=1e-10)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
     def test_no_contact_means_no_limit(self):
         text, report = self.succeed("timestep", self.scene(PAIR), "--set", "balls.1.position=[1, 1, 1]")
         self.assertIn("no timestep is critical", text)

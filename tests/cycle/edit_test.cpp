@@ -105,9 +105,43 @@ TEST(Edit, ADiskKeepsTheMassOfADisk) {
   bodies.radius = {2};
   bodies.mass = {model::disk_mass(2, 5)};
   bodies.inertia = {model::disk_inertia(2, bodies.mass[0])};
-  model::scale_radius(bodies, 0, 1.5);
+  bodies.position = {Vec3::Zero()};
+  model::scale_radii(bodies, std::vector<std::int32_t>{0}, 1.5);
   EXPECT_NEAR(bodies.mass[0], model::disk_mass(3, 5), 1e-12);
   EXPECT_NEAR(bodies.inertia[0], model::disk_inertia(3, model::disk_mass(3, 5)), 1e-12);
+}
+
+TEST(Edit, ARadiusMayTakeItsTime) {
+  constexpr double k = 3;
+  SceneBuilder builder({.kn = k, .tension = false});
+  builder.ball({0, 0, 1}, 1, 2).plane({0, 0, 0}, {0, 0, 1}).plane({0, 0, 2}, {0, 0, -1});
+  Cycle cycle = cycle_of(std::move(builder), 0.01);
+  cycle.run(10);
+  cycle = changed(std::move(cycle), {.of = {}, .radius_by = 1.002, .over = 1.0}, 0.01);
+  cycle.run(50);
+  EXPECT_NEAR(cycle.state().model.bodies.radius[0], 1.001, 1e-15);
+  cycle.run(100);
+  EXPECT_NEAR(cycle.state().model.bodies.radius[0], 1.002, 1e-15);
+  EXPECT_NEAR(assembly::wall_forces(cycle.state().model)[0].z(), -k * 2e-3, 1e-14);
+}
+
+// Loads and a damping from now on: v = F t/m, and with local damping α, (1 - α) F t/m.
+TEST(Edit, LoadsAndDampingFromNowOn) {
+  constexpr double dt = 0.01;
+  SceneBuilder builder;
+  builder.ball({0, 0, 0}, 1, 2).ball({5, 0, 0}, 1, 2);
+  Cycle cycle = cycle_of(std::move(builder), dt);
+  cycle.run(5);
+  State state = cycle.release();
+  assembly::change_bodies(state, {.of = {}, .force = Vec3(3, 0, 0), .moment = Vec3(0, 0, 0.5)}, "test");
+  assembly::change_bodies(state, {.of = ball(1), .damping = 0.4}, "test");
+  cycle = Cycle(std::move(state), fixed_step(dt));
+  cycle.run(100);
+  // The velocity of t - Δt/2: 100 kicks from rest.
+  EXPECT_NEAR(velocity_of(cycle.state(), 0).x(), 3.0 / 2 * 100 * dt, 1e-13);
+  EXPECT_NEAR(velocity_of(cycle.state(), 1).x(), 0.6 * 3.0 / 2 * 100 * dt,
+              2e-2);  // the first kick is undamped
+  EXPECT_NEAR(spin_of(cycle.state(), 0).z(), 0.5 / model::sphere_inertia(1, 2) * 100 * dt, 1e-13);
 }
 
 TEST(Edit, AClumpChangesAsAWhole) {

@@ -51,6 +51,34 @@ class SceneBuilder {
     b.fixed.push_back(fixed);
     if (!b.velocity.empty()) b.velocity.emplace_back(Vec3::Zero());
     if (!b.spin.empty()) b.spin.emplace_back(Vec3::Zero());
+    if (!b.applied_force.empty()) b.applied_force.emplace_back(Vec3::Zero());
+    if (!b.applied_moment.empty()) b.applied_moment.emplace_back(Vec3::Zero());
+    if (!b.damping.empty()) b.damping.push_back(model::Bodies::scene_damping);
+    if (!b.ramp.empty()) b.ramp.emplace_back();
+    return *this;
+  }
+  /// Loads of the ball added last.
+  SceneBuilder& loaded(const Vec3& force, const Vec3& moment = Vec3::Zero()) {
+    model::Bodies& b = scene_.bodies;
+    const Vec3 none = Vec3::Zero();
+    if (!b.applied_force.empty()) b.applied_force.pop_back();
+    if (!b.applied_moment.empty()) b.applied_moment.pop_back();
+    model::add_row(b.applied_force, b.size() - 1, force, none);
+    model::add_row(b.applied_moment, b.size() - 1, moment, none);
+    return *this;
+  }
+  /// Local damping of the ball added last.
+  SceneBuilder& damped_alone(double alpha) {
+    model::Bodies& b = scene_.bodies;
+    if (!b.damping.empty()) b.damping.pop_back();
+    model::add_row(b.damping, b.size() - 1, alpha, model::Bodies::scene_damping);
+    return *this;
+  }
+  /// The radius of the ball added last grows by a factor.
+  SceneBuilder& growing(double factor, double over, double from = 0) {
+    model::Bodies& b = scene_.bodies;
+    b.ramp.resize(b.position.size());
+    b.ramp.back() = {b.radius.back(), b.mass.back(), b.inertia.back(), factor, from, over};
     return *this;
   }
   /// A clump, behind all balls.

@@ -6,7 +6,9 @@
 #include "eigengrain/io/scene_reader.hpp"
 #include "eigengrain/relaxation/relax.hpp"
 
+#include "support/clumps.hpp"
 #include "support/laws.hpp"
+#include "support/motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -46,6 +48,30 @@ TEST(Relax, Tilted10kEndsAtTheRoundingOfPositionsAndStaysThere) {
   // As the explicit code evaluates it, now and later.
   EXPECT_LE(assembly::balance_of(state).mean, 1e-10);
   EXPECT_LE(kept(std::move(state), 1000), 1e-10);
+}
+
+// A dumbbell lies on both its balls, 1.4 apart: N_2 - N_1 = M/0.7, N_1 + N_2 = F. A ball beside it is pulled
+// down.
+TEST(Relax, BearsAppliedForcesAndMoments) {
+  constexpr double k = 1e4;
+  SceneBuilder builder({.kn = k, .tension = false});
+  builder.plane({0, 0, 0}, {0, 0, 1});
+  builder.ball({9, 0, 1}).loaded({0, 0, -20});
+  model::ClumpShape shape = dumbbell();
+  builder.clump(shape, {.position = {0, 0, 1}, .force = {0, 0, -50}, .moment = {0, 7, 0}});
+  assembly::State state = cycle::start(builder.scene());
+  const relaxation::RelaxResult result = relaxation::relax(state);
+  EXPECT_TRUE(result.converged);
+  const auto overlap = [&](std::int64_t identity) {
+    return 1 - state.model.bodies.position[row_of(state, identity)].z();
+  };
+  // To rounding of places of order one, but that the lever is 0.7 cos of a tilt of 1e-3/1.4.
+  EXPECT_NEAR(overlap(0), 20 / k, 1e-13);
+  const double right = state.model.bodies.position[row_of(state, 1)].x() > 0 ? overlap(1) : overlap(2);
+  const double left = state.model.bodies.position[row_of(state, 1)].x() > 0 ? overlap(2) : overlap(1);
+  EXPECT_NEAR(right, 30 / k, 5e-7 * 7 / 1.4 / k + 1e-13);
+  EXPECT_NEAR(left, 20 / k, 5e-7 * 7 / 1.4 / k + 1e-13);
+  EXPECT_LE(kept(std::move(state), 300), 1e-10);
 }
 
 TEST(Relax, FindsTheWeightOfAColumn) {

@@ -8,9 +8,9 @@
 
 namespace eigengrain::assembly {
 
-/// How far a model is from equilibrium: resultants of contacts and gravity on the free components of bodies
-/// with at least one acting contact, over the mean force of the acting contacts. A clump counts as one body;
-/// its moments are over the radius of the sphere that holds it.
+/// How far a model is from equilibrium: resultants of contacts, gravity and applied loads on the free
+/// components of bodies with at least one acting contact, over the mean force of the acting contacts. A clump
+/// counts as one body; its moments are over the radius of the sphere that holds it.
 struct Balance {
   double mean = 0;         ///< mean resultant force / mean contact force: the unbalanced ratio
   double max = 0;          ///< largest resultant force / mean contact force
@@ -20,9 +20,9 @@ struct Balance {
   /// than some three times this cannot be asked for.
   double floor = 0;
   std::int64_t unsupported =
-      0;                      ///< bodies that gravity pulls, that are free to follow and that nothing touches
-  std::int64_t bodies = 0;    ///< bodies with acting contacts that are free to move
-  std::int64_t contacts = 0;  ///< acting
+      0;  ///< bodies that gravity or a load moves, that are free to follow and that nothing touches
+  std::int64_t bodies = 0;        ///< bodies with acting contacts that are free to move
+  std::int64_t contacts = 0;      ///< acting
   double mean_contact_force = 0;  ///< N
 };
 

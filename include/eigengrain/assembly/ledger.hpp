@@ -11,6 +11,8 @@ namespace eigengrain::assembly {
 /// Energy that went in and out, summed over the steps since the ledger began, J.
 struct EnergyIntegrals {
   double gravity = 0;     ///< work of gravity on all bodies
+  double applied = 0;     ///< work of forces and moments that are applied to bodies
+  double growth = 0;      ///< what changing radii add to elastic and kinetic energy
   double prescribed = 0;  ///< work of whatever makes fixed components keep their velocity
   double walls = 0;       ///< work of walls that move
   double damping = 0;     ///< taken by local damping
@@ -18,6 +20,8 @@ struct EnergyIntegrals {
 
   EnergyIntegrals& operator+=(const EnergyIntegrals& other) {
     gravity += other.gravity;
+    applied += other.applied;
+    growth += other.growth;
     prescribed += other.prescribed;
     walls += other.walls;
     damping += other.damping;
@@ -36,8 +40,10 @@ struct EnergyIntegral {
 };
 
 /// All integrals: balance, state files, tables and JSON go through this list.
-inline constexpr std::array<EnergyIntegral, 9> energy_integrals{{
+inline constexpr std::array<EnergyIntegral, 11> energy_integrals{{
     {"gravity_work", +1, [](EnergyIntegrals& all) -> double& { return all.gravity; }},
+    {"applied_work", +1, [](EnergyIntegrals& all) -> double& { return all.applied; }},
+    {"growth_work", +1, [](EnergyIntegrals& all) -> double& { return all.growth; }},
     {"prescribed_work", +1, [](EnergyIntegrals& all) -> double& { return all.prescribed; }},
     {"wall_work", +1, [](EnergyIntegrals& all) -> double& { return all.walls; }},
     {"slip_loss", -1, [](EnergyIntegrals& all) -> double& { return all.contacts.slip; }},

@@ -19,7 +19,7 @@ struct LinearSystem {
   std::vector<contact::ContactDamping> damping;
   Unknowns unknowns;
   /// [unknowns.size()] the diagonal of M: mass for a u (kg), moment of inertia for a θ (kg m²), of
-  /// clumps the three principal ones. Masked
+  /// clumps the three principal ones; the inertial ones where masses are scaled. Masked
   /// components carry it too; it is never zero.
   std::vector<double> mass;
 

@@ -13,7 +13,8 @@
 namespace eigengrain::assembly {
 
 /// Which pairs the contacts were listed for: all that were no more than `skin` apart when the bodies were at
-/// `position`. The list holds until some body, or some wall, has moved by half the skin.
+/// `position`. The list holds until some body, or some wall, has moved by half the skin; what a
+/// radius changes counts as a way.
 struct NeighbourList {
   double skin = 0;             ///< m
   std::vector<Vec3> position;  ///< [bodies] where they were when the list was made, m
@@ -21,6 +22,7 @@ struct NeighbourList {
   double wall_way = 0;         ///< how far any wall may have moved since, at the bodies, m
   /// [wall_motions] the greatest distance of a body from the wall's centre while the list holds, m
   std::vector<double> wall_lever;
+  double growth = 0;  ///< how much any radius may have changed since, m
 };
 
 /// A model in motion: all that the explicit cycle continues from, to the bit. Positions, contacts with their

@@ -36,6 +36,9 @@ class BlockBound {
 
   /// The bound with the present weights, s. Rounding is on the safe side. Cost O(contacts).
   double timestep() const;
+  /// [bodies] The largest eigenvalue of each body's block with the present weights, rounded up; 0 where
+  /// nothing resists it, 1/s².
+  std::vector<double> eigenvalues() const;
   /// One Collatz-Wielandt sweep over all bodies. Cost O(contacts) and one 6×6 eigenvalue a body.
   void sweep();
 

@@ -12,10 +12,13 @@
 namespace eigengrain::cycle {
 
 /// The step to take from a state on, s. It is asked before the first step, after every new list of contacts
-/// and every `every` steps (0: not in between), so that what adapts depends on counts alone.
+/// and every `every` steps (0: not in between; while radii change every 20 steps at least), so that what
+/// adapts depends on counts alone.
 struct TimestepPolicy {
   std::function<double(const assembly::State&)> dt;
   std::int64_t every = 0;
+  /// What is done to the state before it is asked; empty: nothing (see cycle/mass_scaling.hpp).
+  std::function<void(assembly::State&)> prepare{};
 };
 
 /// A scene at rest in time: bodies sorted, near pairs listed, forces of the first moment. Velocities are
@@ -24,7 +27,7 @@ assembly::State start(const model::Scene& scene);
 
 /// Steps a state through time.
 ///
-///   force at t          F = Σ contacts + m g
+///   force at t          F = Σ contacts + m g + applied force; M = Σ contacts + applied moment
 ///   local damping       F_d = -α |F| sign(v₋), component by component
 ///   velocity            v₊ = v₋ + ½(Δt_old + Δt) (F + F_d)/m           fixed components keep theirs
 ///   position            x += v₊ Δt
@@ -33,6 +36,7 @@ assembly::State start(const model::Scene& scene);
 ///   orientation         q <- exp(v₊ Δt of the spin) q, where the scene has orientations
 ///   walls               by the velocity that is given for the middle of the step, servo walls by their load
 ///                       at t
+///   radii               those of t + Δt, where some are ramped; masses follow
 ///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
 ///                       positions, the increments v₊ Δt and the old history, which is committed at once
 ///
@@ -58,8 +62,9 @@ class Cycle {
 
  private:
   /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
-  /// made, m².
-  template <class Work>
+  /// made, m². By what the bodies have of their own, and whether a ledger is kept.
+  double move(double duration, double dt);
+  template <class Work, class Properties>
   double move(double duration, double dt);
   void list_anew();
   void choose_timestep();

@@ -22,8 +22,8 @@ struct Trouble {
 ///   - energy out of nothing: kinetic and elastic energy beyond a hundred times what there was and the
 ///     most that gravity has released since. Below the limit of the undamped cycle a mode stays within 22.4
 ///     times its amplitude at 0.999 of the limit (500 times its energy); at ordinary steps within a few
-///     times. Not where energy comes in unseen: gravity along a periodic axis, bodies and walls that are
-///     moved with a given velocity.
+///     times. Not where energy comes in unseen: gravity along a periodic axis, applied loads, radii
+///     that change, masses that are scaled, bodies and walls that are moved with a given velocity.
 class Watch {
  public:
   explicit Watch(const assembly::State& state);

@@ -57,6 +57,20 @@ struct TimestepChoice {
   std::optional<double> dt;  ///< s, with policy fixed
 };
 
+/// Inertial masses that are not the true ones, so that a static solution takes fewer steps (PFC3D 1.7). Only
+/// the steady state at the end means anything.
+struct MassScaling {
+  enum class Form {
+    differential,  ///< of each body for itself
+    uniform        ///< of all by one factor
+  };
+  Form form = Form::differential;
+  double dt = 1;  ///< the step that the masses make stable, with TimestepChoice::safety, s
+};
+constexpr const char* name_of(MassScaling::Form form) {
+  return form == MassScaling::Form::uniform ? "uniform" : "differential";
+}
+
 /// A table that a run writes, a line every so many steps.
 struct History {
   std::string file;                 ///< CSV, in the folder of results
@@ -88,9 +102,10 @@ struct Scene {
   std::vector<WallMotion> wall_motions;  ///< of walls that move
   PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
-  double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47
+  double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47, of bodies that have none of their own
   bool full_levers = false;     ///< levers of balls end at their surface, not at the contact point
   TimestepChoice timestep;
+  std::optional<MassScaling> mass_scaling;
   RunChoice run;
   std::vector<GroupChoice> groups;  ///< made when the scene starts
   std::vector<Stage> stages;        ///< instead of `run`
