@@ -1,10 +1,21 @@
 #include "growth.hpp"
 
-#include "eigengrain/assembly/forces.hpp"
+#include "eigengrain/measures/ledger.hpp"
 
 #include <vector>
 
 namespace eigengrain::cycle {
+
+namespace {
+
+/// What radii can change at given places. Not the energy across n and against rolling: that of a contact at
+/// the cone would follow F_n, which is the business of its slip.
+double energy_along_normals(const assembly::Model& model) {
+  const measures::ElasticEnergy energy = measures::elastic_energy(model);
+  return energy.normal + energy.bonds;
+}
+
+}  // namespace
 
 Growth::Growth(assembly::State& state, double dt)
     : state_(state),
@@ -39,10 +50,10 @@ double Growth::elastic_gain() {
   model::Bodies& bodies = state_.model.bodies;
   const std::vector<double> now = bodies.radius;
   bodies.radius = before_;
-  const double small = assembly::elastic_energy(state_.model);
+  const double small = energy_along_normals(state_.model);
   for (std::size_t i = 0; i < now.size(); ++i)
     if (bodies.ramp[i].factor != 1) bodies.radius[i] = bodies.ramp[i].scale(end_) * bodies.ramp[i].radius;
-  const double large = assembly::elastic_energy(state_.model);
+  const double large = energy_along_normals(state_.model);
   bodies.radius = now;
   return large - small;
 }

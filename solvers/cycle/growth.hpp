@@ -7,7 +7,7 @@ namespace eigengrain::cycle {
 /// The change of radii in a step, from t to t + dt: contacts at t + dt are those of the new radii. Kicks of
 /// the step are by the masses at t.
 ///
-/// Its energy, where a ledger is kept, is what elastic energy would gain if radii alone changed, in the mean
+/// Its energy, where a ledger is kept, is what springs along n would gain if radii alone changed, in the mean
 /// of the places at t and at t + dt, and what the masses gain in kinetic energy: with the trapezoidal rule
 /// for all other works this is exact for linear contacts that stay closed (docs/theory.md).
 class Growth {
@@ -22,7 +22,7 @@ class Growth {
   void count();
 
  private:
-  /// Elastic energy with the radii of the end of the step less that with those of its beginning, J.
+  /// Energy along normals with the radii of the end of the step less that with those of its beginning, J.
   double elastic_gain();
 
   assembly::State& state_;

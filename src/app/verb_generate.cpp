@@ -1,3 +1,4 @@
+#include "eigengrain/assembly/loads.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/cycle.hpp"
@@ -32,6 +33,9 @@ std::vector<std::string> lost_in_a_packing(const model::Bodies& bodies) {
     lost.emplace_back("fixed components");
   if (!bodies.clumps.empty()) lost.emplace_back("clumps");
   if (!bodies.velocity.empty() || !bodies.spin.empty()) lost.emplace_back("velocities");
+  if (assembly::has_loads(bodies)) lost.emplace_back("loads");
+  if (!bodies.damping.empty()) lost.emplace_back("damping of their own");
+  if (!bodies.ramp.empty()) lost.emplace_back("growth");
   return lost;
 }
 

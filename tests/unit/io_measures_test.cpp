@@ -137,6 +137,8 @@ TEST(MeasureColumns, AreThoseOfTheirRegions) {
       .elastic = {2, 3, 4, 5},
       .gravitational = 6,
       .integrals = {.gravity = 7,
+                    .applied = 7.25,
+                    .growth = 7.5,
                     .prescribed = 8,
                     .walls = 9,
                     .damping = 15,
@@ -151,7 +153,8 @@ TEST(MeasureColumns, AreThoseOfTheirRegions) {
   text << input.rdbuf();
   EXPECT_EQ(text.str(),
             "step,time [s],ledger kinetic [J],elastic normal [J],elastic shear [J],elastic rolling [J],"
-            "elastic bonds [J],ledger gravitational [J],gravity work [J],prescribed work [J],wall work [J],"
+            "elastic bonds [J],ledger gravitational [J],gravity work [J],applied work [J],growth work "
+            "[J],prescribed work [J],wall work [J],"
             "slip loss [J],rolling loss [J],viscous loss [J],hysteresis loss [J],bond loss [J],"
             "damping loss [J],balance error [J],"
             "low porosity,low coordination,low coordination without rattlers,low sliding,"
@@ -159,7 +162,8 @@ TEST(MeasureColumns, AreThoseOfTheirRegions) {
             "low stress yz [Pa],low strain rate xx [1/s],low strain rate yy [1/s],low strain rate zz [1/s],"
             "low strain rate xy [1/s],low strain rate xz [1/s],low strain rate yz [1/s],"
             "low fabric xx,low fabric yy,low fabric zz,low fabric xy,low fabric xz,low fabric yz\n"
-            "0,0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,0.40000000000000002,5,5.5,0.25,-1,-2,-3,-8,-5,-6,nan,"
+            "0,0,1,2,3,4,5,6,7,7.25,7.5,8,9,10,11,12,13,14,15,16,0.40000000000000002,5,5.5,0.25,-1,-2,-3,-8,-"
+            "5,-6,nan,"
             "nan,nan,nan,nan,nan,"
             "0.25,0.25,0.25,0,0,0\n");
 }

@@ -44,6 +44,9 @@ TEST(Schema, EveryKeyStandsOnceAndInASectionOfItsOwn) {
 std::vector<std::string> scenes_with_room() {
   const std::string materials = "materials: [{name: grain, density: 2500}]\n";
   const std::string ball = "balls: [{position: [0.1, 0.1, 0.1], radius: 5 mm, material: grain}]\n";
+  const std::string growing =
+      "balls: [{position: [0.1, 0.1, 0.1], radius: 5 mm, material: grain, growth: {factor: 2, over: 1}}]\n";
+  const std::string scaled = "mass_scaling: {dt: 1}\n";
   const std::string file = "balls: [{file: packing.txt, material: grain}]\n";
   const std::string lattice =
       "balls: [{lattice: fcc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.1, 0.1, 0.1]}, material: grain}]\n";
@@ -96,6 +99,8 @@ std::vector<std::string> scenes_with_room() {
                                   materials + no_law + passing,
                                   materials + no_law + ball + plane,
                                   materials + no_law + ball + box,
+                                  materials + no_law + growing,
+                                  materials + no_law + ball + scaled,
                                   materials + no_law + ball + clump,
                                   materials + no_law + ball + clump_as_given,
                                   materials + no_law + ball + carried,
