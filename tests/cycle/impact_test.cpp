@@ -1,5 +1,6 @@
-// Impacts against closed forms: restitution of dashpots and of the hysteretic spring, and the tests of Chung
-// and Ooi (Granular Matter 13:643, 2011). Planes are rigid. Steps are parts of the time of the impact.
+// Impacts against closed forms: restitution of dashpots and of the hysteretic spring, and tests 1 to 5 of
+// Chung and Ooi (Granular Matter 13:643, 2011; 7 and 8: spinning_impact_test.cpp). Planes are rigid. Steps
+// are parts of the time of the impact.
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/measures/measure.hpp"
 
