@@ -72,15 +72,17 @@ Cycle::Cycle(State state, TimestepPolicy policy)
       state_.list.wall_lever.size() != state_.model.wall_poses.size())
     list_anew();
   if (state_.next_dt == 0) choose_timestep();
+  if (state_.ledger && state_.model.cell.deforms())
+    throw InputError("the energy ledger does not count the work of a periodic cell that deforms");
 }
 
-template <class Work>
-double Cycle::move(double duration, double dt) {
+template <class Work, class Frame>
+double Cycle::move(double duration, double dt, const Frame& frame) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
   const double damping = state_.model.local_damping;
   const bool clumps = !bodies.clumps.empty();
-  if (clumps) move_clumps(state_, duration, dt);
+  if (clumps) move_clumps(state_, duration, dt, frame);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
   std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);
@@ -91,14 +93,19 @@ double Cycle::move(double duration, double dt) {
       if (!clumps || bodies.clumps.of(static_cast<std::int32_t>(i)) == model::Clumps::none) {
         const model::FixedComponents fixed = bodies.fixed[i];
         const Vec3 force = state_.force[i] + bodies.mass[i] * state_.model.gravity;
-        kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation(), work);
+        kick(bodies.velocity[i], force, bodies.mass[i], duration, damping, fixed.translation(), work,
+             FlowAt<Frame>(frame, bodies.position[i]));
         work.gravity(bodies.mass[i] * state_.model.gravity, bodies.velocity[i]);
         bodies.position[i] += dt * bodies.velocity[i];
         if (state_.turns())
-          kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation(),
-               work);
+          kick(bodies.spin[i], state_.moment[i], bodies.inertia[i], duration, damping, fixed.rotation(), work,
+               NoFlow{});
       }
-      const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
+      double squared = 0;
+      if constexpr (Frame::moves)
+        squared = (bodies.position[i] - frame.step.carried(state_.list.position[i])).squaredNorm();
+      else
+        squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
@@ -130,16 +137,27 @@ void Cycle::choose_timestep() {
 void Cycle::step() {
   const double dt = state_.next_dt;
   const double half_skin = 0.5 * state_.list.skin;
+  double room = half_skin;  // for bodies while the list holds
   const bool counts_walls = state_.ledger && walls_.any();
   std::vector<assembly::WallLoad> before;
   if (counts_walls) before = assembly::wall_loads(state_.model);
   if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
   const double duration = 0.5 * (state_.dt + dt);
-  const double way = state_.ledger ? move<KickWork>(duration, dt) : move<NoWork>(duration, dt);
-  const bool expired = !(way <= half_skin * half_skin && state_.list.wall_way <= half_skin);
+  const bool deforms = state_.model.cell.deforms();
+  double way = 0;
+  if (deforms) {
+    const assembly::CellStep cell(state_, dt);
+    way = move<NoWork>(duration, dt, assembly::MovingCell{cell});
+    room = cell.margin;
+  } else {
+    way = state_.ledger ? move<KickWork>(duration, dt, assembly::CellAtRest{})
+                        : move<NoWork>(duration, dt, assembly::CellAtRest{});
+  }
+  const bool expired = !(room >= 0 && way <= room * room && state_.list.wall_way <= half_skin);
   if (expired) list_anew();
 
   model::Bodies& bodies = state_.model.bodies;
+  const Mat3 cell_step = dt * state_.model.cell.rate;  // by the edges that the list left
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
   forces_.advance(state_.model,
                   {.position = bodies.position,
@@ -148,7 +166,8 @@ void Cycle::step() {
                    .duration = dt,
                    .orientation = bodies.orientation,
                    .per_second = 1 / dt,
-                   .walls = walls_.any() ? &walls_ : nullptr},
+                   .walls = walls_.any() ? &walls_ : nullptr,
+                   .cell_step = deforms ? &cell_step : nullptr},
                   sum, state_.ledger ? &state_.ledger->integrals.contacts : nullptr);
   if (counts_walls)
     state_.ledger->integrals.walls -= work_on_walls(before, assembly::wall_loads(state_.model), walls_);

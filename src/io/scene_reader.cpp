@@ -115,6 +115,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
     read_clumps(section, into);
   });
   check_scene(root, draft);
+  check_deformation(root, draft);
   check_planar(root, draft);
   take_from_materials(draft, diagnostics);
   check_placement(root, draft);
@@ -143,6 +144,7 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
     take_materials_of_balls(section, into, material_of_ball);
   });
   check_scene(root, draft);
+  check_deformation(root, draft);
   take_from_materials(draft, diagnostics);
   diagnostics.throw_if_any();
   add_notes(draft);

@@ -15,13 +15,20 @@ namespace eigengrain::io::layout {
 
 inline constexpr std::string_view format = "eigengrain state";
 /// Grows with every change after which an old reader would misunderstand a file.
-inline constexpr std::int64_t schema = 2;
+inline constexpr std::int64_t schema = 3;
 inline constexpr std::int64_t oldest_schema = 1;
 
+/// Whether the periodic cell is not what the settings say.
+inline bool cell_has_moved(const assembly::State& state) {
+  const model::PeriodicCell& cell = state.model.cell;
+  return cell.edges != state.settings.cell.edges || !cell.rate.isZero(0);
+}
+
 /// The least schema that says all of a state, so that older programs read what they understand: 2 with
-/// clumps.
+/// clumps, 3 where the periodic cell has moved.
 inline std::int64_t schema_of(const assembly::State& state) {
-  return state.model.bodies.clumps.empty() ? oldest_schema : schema;
+  if (cell_has_moved(state)) return 3;
+  return state.model.bodies.clumps.empty() ? oldest_schema : 2;
 }
 
 inline const std::string root = "/";
@@ -37,6 +44,10 @@ inline const std::string list = "/neighbour_list";
 inline const std::string ledger = "/ledger";
 inline const std::string list_position = "/neighbour_list/position";
 inline const std::string list_wall_lever = "/neighbour_list/wall_lever";
+inline const std::string cell = "/cell";
+inline const std::string cell_edges = "/cell/edges";
+inline const std::string cell_rate = "/cell/rate";
+inline const std::string list_cell_edges = "/neighbour_list/cell_edges";
 inline const std::string surfaces = "/surfaces";
 inline const std::string surface_fingerprint = "/surfaces/fingerprint";
 inline const std::string walls = "/moving_walls";

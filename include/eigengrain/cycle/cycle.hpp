@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/state.hpp"
 
@@ -33,6 +34,8 @@ assembly::State start(const model::Scene& scene);
 ///   orientation         q <- exp(v₊ Δt of the spin) q, where the scene has orientations
 ///   walls               by the velocity that is given for the middle of the step, servo walls by their load
 ///                       at t
+///   periodic cell       where it has a velocity gradient (assembly/cell_motion.hpp): H₊ = exp(L Δt) H, and
+///                       bodies take part in its flow
 ///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
 ///                       positions, the increments v₊ Δt and the old history, which is committed at once
 ///
@@ -58,9 +61,9 @@ class Cycle {
 
  private:
   /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
-  /// made, m².
-  template <class Work>
-  double move(double duration, double dt);
+  /// made, in a cell that moves from where that took them, m².
+  template <class Work, class Frame>
+  double move(double duration, double dt, const Frame& frame);
   void list_anew();
   void choose_timestep();
 
