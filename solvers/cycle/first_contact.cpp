@@ -78,8 +78,8 @@ double fastest_approach(const assembly::State& state) {
   for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
     ball = std::max(ball, fluctuation.of(bodies.velocity[i], bodies.position[i]).norm());
   // The flow of a cell moves neighbours against each other, each by this at most.
-  ball += state.model.cell.flow_gradient().norm() *
-          *std::max_element(bodies.radius.begin(), bodies.radius.end());
+  ball +=
+      state.model.cell.flow_gradient().norm() * *std::max_element(bodies.radius.begin(), bodies.radius.end());
   double other = ball;
   const std::vector<model::WallMotion>& motions = state.model.wall_motions;
   for (std::size_t m = 0; m < motions.size(); ++m) {

@@ -175,9 +175,10 @@ void check_deformation(const Section& root, const SceneDraft& draft) {
                                  draft.scene.surfaces.front().name, rest));
   for (const model::History& table : draft.scene.histories)
     if (table.ledger)
-      root.report(key, fmt::format("a cell that deforms, whose work the ledger of \"{}\" does not count; take "
-                                   "`energies` there, {}",
-                                   table.file, rest));
+      root.report(key,
+                  fmt::format("a cell that deforms, whose work the ledger of \"{}\" does not count; take "
+                              "`energies` there, {}",
+                              table.file, rest));
   if (!draft.planar) return;
   const int normal = draft.planar->normal;
   if (!gradient.row(normal).isZero(0) || !gradient.col(normal).isZero(0))

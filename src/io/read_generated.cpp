@@ -53,7 +53,8 @@ std::optional<Region> region_of_cell(const Section& section, const model::Period
                           : ", which says where the balls go");
     return std::nullopt;
   }
-  return Region{.lower = cell.origin, .upper = cell.origin + cell.edges.diagonal(), .periodic = cell.periodic};
+  return Region{
+      .lower = cell.origin, .upper = cell.origin + cell.edges.diagonal(), .periodic = cell.periodic};
 }
 
 std::optional<Region> read_region(const Section& section, const model::PeriodicCell& cell) {

@@ -21,11 +21,11 @@ void check_gradient(const Section& section, const model::PeriodicCell& cell) {
       if (gradient(i, j) == 0) continue;
       const int open = !cell.periodic[static_cast<std::size_t>(i)] ? i : j;
       if (cell.periodic[static_cast<std::size_t>(open)]) continue;
-      section.report("velocity_gradient",
-                     fmt::format("{0} /s in row {1}, column {2}, and the cell does not repeat along {3}; write 0 "
-                                 "there, or add {3} to axes",
-                                 gradient(i, j), i + 1, j + 1,
-                                 axis_names[static_cast<std::size_t>(open)]));
+      section.report(
+          "velocity_gradient",
+          fmt::format("{0} /s in row {1}, column {2}, and the cell does not repeat along {3}; write 0 "
+                      "there, or add {3} to axes",
+                      gradient(i, j), i + 1, j + 1, axis_names[static_cast<std::size_t>(open)]));
     }
 }
 
@@ -33,10 +33,11 @@ void read_gradient(const Section& section, model::PeriodicCell& cell) {
   const auto rows = section.vectors("velocity_gradient");
   if (!rows || rows->empty()) return;
   if (rows->size() != 3)
-    return section.report("velocity_gradient",
-                          fmt::format("{} rows; three are wanted, e.g. [[0, 0, 0.5], [0, 0, 0], [0, 0, 0]]",
-                                      rows->size()));
-  for (int i = 0; i < 3; ++i) cell.velocity_gradient.row(i) = (*rows)[static_cast<std::size_t>(i)].transpose();
+    return section.report(
+        "velocity_gradient",
+        fmt::format("{} rows; three are wanted, e.g. [[0, 0, 0.5], [0, 0, 0], [0, 0, 0]]", rows->size()));
+  for (int i = 0; i < 3; ++i)
+    cell.velocity_gradient.row(i) = (*rows)[static_cast<std::size_t>(i)].transpose();
   check_gradient(section, cell);
 }
 

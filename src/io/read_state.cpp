@@ -151,8 +151,9 @@ void read_cell(const h5::File& hdf5, const model::Scene& stored, const fs::path&
   state.list.edges = cell.edges;
   if (!hdf5.has(layout::cell)) return;
   if (state.settings.cell.origin != stored.cell.origin || state.settings.cell.edges != stored.cell.edges)
-    refuse(file, "periodic: another box or origin than that of the state, whose cell has moved since; leave "
-                 "them out (a velocity_gradient may change), or start from the scene");
+    refuse(file,
+           "periodic: another box or origin than that of the state, whose cell has moved since; leave "
+           "them out (a velocity_gradient may change), or start from the scene");
   cell.edges = read_matrix(hdf5, layout::cell_edges);
   cell.rate = read_matrix(hdf5, layout::cell_rate);
   state.list.edges = read_matrix(hdf5, layout::list_cell_edges);

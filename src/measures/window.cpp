@@ -67,9 +67,8 @@ Window::Window(const model::Region& region, const assembly::Model& model) {
   for (int k = 0; k < 3; ++k) {
     // A box of just one period holds everything once: clipping it and adding the images up again would only
     // add rounding. Bodies may stand a little outside of the cell until the next list wraps them.
-    const bool one_period =
-        cell_.periodic[k] &&
-        (given == nullptr || (!slanted_ && box.max[k] - box.min[k] == cell_.edges(k, k)));
+    const bool one_period = cell_.periodic[k] &&
+                            (given == nullptr || (!slanted_ && box.max[k] - box.min[k] == cell_.edges(k, k)));
     if (!one_period) continue;
     cell_.periodic[k] = false;
     cell_.edges.col(k).setZero();

@@ -24,7 +24,8 @@ void require_near(double cells, double coordinate, double length, int axis) {
       "xyz"[axis], coordinate, cells, length));
 }
 
-/// The cell of a place. The clamp is there for a centre that is not a number: it touches nothing, but must not become an index.
+/// The cell of a place. The clamp is there for a centre that is not a number: it touches nothing, but must
+/// not become an index.
 double clamped_home(double place) {
   const double cells = std::floor(place);
   return std::max(std::min(farthest_home, cells), -farthest_home);

@@ -30,8 +30,8 @@ model::Scene jittered_lattice(std::int64_t bodies) {
   scene.name = "jittered lattice";
   scene.materials.push_back({"grain", 2500.0});
   scene.contacts.push_back({.law = "linear", .parameters = {1e5, 5e4, 0.5, 0.0, 0.0, 0.0}});
-  scene.cell = model::PeriodicCell::box(Vec3::Zero(), edge * Vec3(cells[0], cells[1], cells[2]),
-                                        {true, true, true});
+  scene.cell =
+      model::PeriodicCell::box(Vec3::Zero(), edge * Vec3(cells[0], cells[1], cells[2]), {true, true, true});
 
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> jitter(-0.05, 0.05);

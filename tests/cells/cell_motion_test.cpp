@@ -1,11 +1,13 @@
 // The motion of a cell and of bodies in it: closed forms for what is free, and that no result depends on
 // which image of a body, or which edges of the lattice, a state happens to hold.
 #include "eigengrain/assembly/cell_motion.hpp"
+
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/energies.hpp"
 
 #include "cells/support.hpp"
 #include "support/clumps.hpp"
+#include "support/lattices.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,8 +37,7 @@ TEST(MeanGradient, IsThatOfTheExponential) {
     EXPECT_LT((assembly::mean_gradient(turn, dt) - turned).norm(), 10 * tolerance * turned.norm());
     const Mat3 swap = shear_rate(0, 1, 1) + shear_rate(1, 0, 1);
     const double half_hyperbolic = std::sinh(0.5 * dt);
-    const Mat3 stretched =
-        (std::sinh(dt) * swap + 2 * half_hyperbolic * half_hyperbolic * swap * swap) / dt;
+    const Mat3 stretched = (std::sinh(dt) * swap + 2 * half_hyperbolic * half_hyperbolic * swap * swap) / dt;
     EXPECT_LT((assembly::mean_gradient(swap, dt) - stretched).norm(), 10 * tolerance * stretched.norm());
   }
 }
@@ -62,8 +63,7 @@ TEST(FreeBodies, MoveAsTheCellDoes) {
   const SceneBuilder builder = scattered();
   SceneBuilder copy = builder;
   std::int64_t calls = 0;
-  const cycle::TimestepPolicy changing{
-      [&](const State&) { return ++calls % 2 == 0 ? 0.13 : 0.08; }, 1};
+  const cycle::TimestepPolicy changing{[&](const State&) { return ++calls % 2 == 0 ? 0.13 : 0.08; }, 1};
   Cycle cycle(cycle::start(copy.scene()), changing);
   cycle.run(2000);
   State state = cycle.release();
@@ -183,13 +183,14 @@ Difference difference_after(const State& first, const State& second, int steps) 
   b.run(steps);
   Difference found{apart(a.state(), b.state()), 0};
   for (std::int64_t i = 0; i < a.state().model.bodies.size(); ++i)
-    found.acceleration = std::max(found.acceleration, (a.state().force[row_of(a.state(), i)] -
-                                                       b.state().force[row_of(b.state(), i)]).norm());
+    found.acceleration =
+        std::max(found.acceleration,
+                 (a.state().force[row_of(a.state(), i)] - b.state().force[row_of(b.state(), i)]).norm());
   return found;
 }
 
-// Rounding alone tells the states apart: an ulp of positions of up to 20 is 4e-15, in a step it makes forces of
-// as much (k = 1), and collisions make some ten times more of it each.
+// Rounding alone tells the states apart: an ulp of positions of up to 20 is 4e-15, in a step it makes forces
+// of as much (k = 1), and collisions make some ten times more of it each.
 TEST(Images, AreAllTheSame) {
   const std::vector<std::vector<double>> laws{
       {1, 0.5, 0.4, 0, 0, 0},                  // friction
@@ -233,18 +234,18 @@ TEST(Images, OfOneBallShearTheirContacts) {
     const double strain = rate * state.time;
     EXPECT_NEAR(strain, sign * 2.6, 1e-12);
     EXPECT_GT(state.list.rebuilds, 10);
-    // Reduced: the edge would lean by 2.6 of its length over itself, and x is 8 long: 5.17 of 8 becomes -2.83.
+    // Reduced: the edge would lean by 2.6 of its length over itself, and x is 8 long: 5.17 of 8 becomes
+    // -2.83.
     EXPECT_LT(std::abs(state.model.cell.edges(0, 2)), 4.0);
     const std::vector<Vec3> shear = shears_of(state);
     ASSERT_GE(shear.size(), 1U);
     double most = 0;
     for (const Vec3& force : shear) most = std::max(most, force.norm());
-    // The branch leans by α, tan α = γ, and the image moves along x by 1.99 dγ, cos α of it across the branch:
-    // k_s 1.99 ∫ dγ/√(1 + γ²). The middle of a step of dγ = 1e-3 errs by dγ² of it.
+    // The branch leans by α, tan α = γ, and the image moves along x by 1.99 dγ, cos α of it across the
+    // branch: k_s 1.99 ∫ dγ/√(1 + γ²). The middle of a step of dγ = 1e-3 errs by dγ² of it.
     EXPECT_NEAR(most, 0.5 * 1.99 * std::asinh(2.6), 1e-6);
     EXPECT_NEAR(velocity_of(state, 0).x(), rate * position_of(state, 0).z(), 1e-13);
     EXPECT_LT(state.force[0].norm(), 1e-13);
-  }
   }
 }
 

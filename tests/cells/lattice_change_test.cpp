@@ -187,9 +187,9 @@ TEST(SlantedCell, ShowsRegionsAllImages) {
     model.cell = slanted_cell(random, 0.4);
     model.cell.rate = Mat3::Random();
     const Vec3 corner = Vec3::Random();
-    const model::Region region{"r", trial % 2 == 0
-                                        ? decltype(model::Region::shape)(model::BoxRegion{corner, corner + Vec3(7, 4, 5)})
-                                        : decltype(model::Region::shape)(model::SphereRegion{corner, 3.5})};
+    const model::Region region{
+        "r", trial % 2 == 0 ? decltype(model::Region::shape)(model::BoxRegion{corner, corner + Vec3(7, 4, 5)})
+                            : decltype(model::Region::shape)(model::SphereRegion{corner, 3.5})};
     const measures::Window window(region, model);
     const Vec3 x = 5 * Vec3::Random();
     int seen = 0;

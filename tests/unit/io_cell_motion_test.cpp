@@ -42,13 +42,15 @@ TEST(VelocityGradient, IsThreeRows) {
 }
 
 TEST(VelocityGradient, MistakesSayWhatToWrite) {
-  EXPECT_THAT(reported("{box: [1, 1, 1], axes: [x, y], velocity_gradient: [[0, 1, 0], [0, 0, 0], [0, 0, 0]]}"),
-              IsEmpty());
+  EXPECT_THAT(
+      reported("{box: [1, 1, 1], axes: [x, y], velocity_gradient: [[0, 1, 0], [0, 0, 0], [0, 0, 0]]}"),
+      IsEmpty());
   EXPECT_THAT(
       reported("{box: [1, 1, 1], axes: [x, y], velocity_gradient: [[0, 0, 2], [0, 0, 0], [0, 0, 3]]}"),
-      ElementsAre(AllOf(HasSubstr("scene.yaml:5: periodic.velocity_gradient: 2 /s in row 1, column 3, and the "
-                                  "cell does not repeat along z; write 0 there, or add z to axes")),
-                  HasSubstr("3 /s in row 3, column 3")));
+      ElementsAre(
+          AllOf(HasSubstr("scene.yaml:5: periodic.velocity_gradient: 2 /s in row 1, column 3, and the "
+                          "cell does not repeat along z; write 0 there, or add z to axes")),
+          HasSubstr("3 /s in row 3, column 3")));
   EXPECT_THAT(reported("{box: [1, 1, 1], velocity_gradient: [[0, 0, 2], [0, 0, 0]]}"),
               ElementsAre(HasSubstr("2 rows; three are wanted")));
   EXPECT_THAT(reported("{box: [1, 1, 1], velocity_gradient: [[0, 0, 2 m], [0, 0, 0], [0, 0, 0]]}"),
@@ -56,7 +58,8 @@ TEST(VelocityGradient, MistakesSayWhatToWrite) {
 }
 
 TEST(VelocityGradient, DoesNotGoWithWhatCannotDeform) {
-  constexpr std::string_view sheared = "{box: [1, 1, 1], velocity_gradient: [[0, 0, 2], [0, 0, 0], [0, 0, 0]]}";
+  constexpr std::string_view sheared =
+      "{box: [1, 1, 1], velocity_gradient: [[0, 0, 2], [0, 0, 0], [0, 0, 0]]}";
   constexpr std::string_view flat =
       "{box: [1, 1, 1], axes: [x, y], velocity_gradient: [[0, 1, 0], [0, 0, 0], [0, 0, 0]]}";
   EXPECT_THAT(reported(sheared), IsEmpty());

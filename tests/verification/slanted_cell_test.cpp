@@ -34,8 +34,8 @@ SceneBuilder primitive_fcc(const Springs& springs, int n, model::FixedComponents
   return builder;
 }
 
-// λ_max m = max(8 (k_n + k_s), 40 k_s) (docs/theory.md): the translational wave is at the zone boundary, which
-// two primitive cells hold as well as the cubic ones do.
+// λ_max m = max(8 (k_n + k_s), 40 k_s) (docs/theory.md): the translational wave is at the zone boundary,
+// which two primitive cells hold as well as the cubic ones do.
 TEST(SlantedCell, HasTheLargestEigenvalueOfFcc) {
   for (const double ks : {0.0, 0.1, 0.25, 0.7}) {
     const Springs springs{.kn = 1, .ks = ks};

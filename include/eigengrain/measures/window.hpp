@@ -11,8 +11,9 @@
 
 namespace eigengrain::measures {
 
-/// The box of all that there is. Along each axis: the cell where that repeats (of edges that slant, their part
-/// along it); else from wall to wall, where planes stand across the axis; else as far as the balls reach.
+/// The box of all that there is. Along each axis: the cell where that repeats (of edges that slant, their
+/// part along it); else from wall to wall, where planes stand across the axis; else as far as the balls
+/// reach.
 model::BoxRegion whole_box(const assembly::Model& model);
 
 /// A region that looks at a model: what of it is inside, periodic images included. A region may reach out of
@@ -44,7 +45,8 @@ class Window {
     std::array<std::int64_t, 3> first{};
     std::array<std::int64_t, 3> last{};
   };
-  /// Of the box from `low` to `high`. In slanted cells from the box of all shifts that bring it to the region.
+  /// Of the box from `low` to `high`. In slanted cells from the box of all shifts that bring it to the
+  /// region.
   Range images_of(const Vec3& low, const Vec3& high) const;
 
   /// Calls visitor(shift, cells) for every image of the box from `low` to `high` that may meet the region.
@@ -62,7 +64,7 @@ class Window {
   double volume_ = 0;
   Vec3 low_ = Vec3::Zero();  ///< the region lies between low_ and high_
   Vec3 high_ = Vec3::Zero();
-  model::PeriodicCell cell_;  ///< periodic along edges of which not only the bodies as they are count
+  model::PeriodicCell cell_;         ///< periodic along edges of which not only the bodies as they are count
   Mat3 inverse_ = Mat3::Identity();  ///< of its edges
   bool slanted_ = false;
   Mat3 rate_ = Mat3::Zero();  ///< of the edges, m/s

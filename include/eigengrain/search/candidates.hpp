@@ -19,8 +19,8 @@ struct CandidatePair {
   friend bool operator==(const CandidatePair&, const CandidatePair&) = default;
 };
 
-/// All pairs whose surfaces are no more than `reach` apart: |x_b + shift - x_a| <= r_a + r_b + reach. Edges of
-/// the cell need not stand at right angles; the cost grows as they slant (reduce() keeps them from it).
+/// All pairs whose surfaces are no more than `reach` apart: |x_b + shift - x_a| <= r_a + r_b + reach. Edges
+/// of the cell need not stand at right angles; the cost grows as they slant (reduce() keeps them from it).
 ///
 /// centres  [n] positions, m (need not lie in the cell)
 /// radii    [n] m, positive
