@@ -59,9 +59,10 @@ struct PeriodicCell {
   Mat3 flow_gradient() const;
 
   /// Translation from the cell to its image, m. Written out, so that it is the same to the bit wherever it is
-  /// asked, and exactly that of a box where the edges stand along the axes.
+  /// asked, and exactly that of a box where the edges stand along the axes. Most contacts stay in the cell.
   template <class Integer>
   Vec3 shift(const std::array<Integer, 3>& image) const {
+    if ((image[0] | image[1] | image[2]) == 0) return Vec3::Zero();
     const auto i = static_cast<double>(image[0]);
     const auto j = static_cast<double>(image[1]);
     const auto k = static_cast<double>(image[2]);
