@@ -18,9 +18,8 @@ struct Trouble {
 /// Looks at a state now and then for the signs of a blow-up, early enough for an earlier state to be good:
 ///   - a position, velocity or force that is not finite;
 ///   - an overlap of more than half of the smaller radius (of the radius, at a wall);
-///   - a ball that moves by more than a tenth of its radius in a step, beyond the flow of a cell that
-///   deforms,
-///     or a cell that takes neighbours past each other by as much: they may pass unseen;
+///   - a ball that moves by more than a tenth of its radius in a step, where a periodic cell deforms beside
+///     its flow and with what that takes neighbours past each other: it may pass others unseen;
 ///   - energy out of nothing: kinetic and elastic energy beyond a hundred times what there was and the
 ///     most that gravity has released since. Below the limit of the undamped cycle a mode stays within 22.4
 ///     times its amplitude at 0.999 of the limit (500 times its energy); at ordinary steps within a few
