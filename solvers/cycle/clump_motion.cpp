@@ -40,7 +40,8 @@ Vec3 damped_moment(const Vec3& moment, const Quat& axes, const Vec3& inertia, co
   return orientation * own;
 }
 
-void move_clump(assembly::State& state, std::int32_t clump, double duration, double dt) {
+template <class Frame>
+void move_clump(assembly::State& state, std::int32_t clump, double duration, double dt, const Frame& frame) {
   model::Bodies& bodies = state.model.bodies;
   model::Clumps& clumps = bodies.clumps;
   const auto c = static_cast<std::size_t>(clump);
@@ -53,7 +54,7 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
   Vec3& velocity = clumps.velocity[c];
   NoWork none(0, 0);  // scenes with clumps have no ledger
   kick(velocity, contacts.force + own.load(holder), own.mass(holder), duration, damping, fixed.translation(),
-       none);
+       none, FlowAt<Frame>(frame, clumps.position[c]));
   clumps.position[c] += dt * velocity;
 
   FreeRotation rotation;
@@ -85,13 +86,17 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
 
 }  // namespace
 
-void move_clumps(assembly::State& state, double duration, double dt) {
+template <class Frame>
+void move_clumps(assembly::State& state, double duration, double dt, const Frame& frame) {
   constexpr std::int64_t chunk_size = 256;
   for_chunks(state.model.bodies.clumps.size(), chunk_size,
              [&](std::int64_t begin, std::int64_t end, std::int64_t) {
                for (auto clump = static_cast<std::int32_t>(begin); clump < end; ++clump)
-                 move_clump(state, clump, duration, dt);
+                 move_clump(state, clump, duration, dt, frame);
              });
 }
+
+template void move_clumps(assembly::State&, double, double, const assembly::CellAtRest&);
+template void move_clumps(assembly::State&, double, double, const assembly::MovingCell&);
 
 }  // namespace eigengrain::cycle

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/state.hpp"
 
 namespace eigengrain::cycle {
@@ -7,7 +8,8 @@ namespace eigengrain::cycle {
 /// Kick of all clumps for a duration by the forces of their balls, and drift for dt (s): velocity and angular
 /// momentum, then centre and orientation, then the places of the balls, whose velocity and spin become the
 /// exact displacement and rotation of the step over dt. Forces are summed ball by ball, in the order of the
-/// scene. Cost O(balls of clumps).
-void move_clumps(assembly::State& state, double duration, double dt);
+/// scene. Frame: assembly::CellAtRest or MovingCell. Cost O(balls of clumps).
+template <class Frame>
+void move_clumps(assembly::State& state, double duration, double dt, const Frame& frame);
 
 }  // namespace eigengrain::cycle

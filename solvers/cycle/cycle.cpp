@@ -81,15 +81,17 @@ Cycle::Cycle(State state, TimestepPolicy policy)
       state_.list.wall_lever.size() != state_.model.wall_poses.size())
     list_anew();
   if (state_.next_dt == 0) choose_timestep();
+  if (state_.ledger && state_.model.cell.deforms())
+    throw InputError("the energy ledger does not count the work of a periodic cell that deforms");
 }
 
-template <class Work, class Properties>
-double Cycle::move(double duration, double dt) {
+template <class Work, class Properties, class Frame>
+double Cycle::move(double duration, double dt, const Frame& frame) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
   const Properties own(state_.model);
   const bool clumps = !bodies.clumps.empty();
-  if (clumps) move_clumps(state_, duration, dt);
+  if (clumps) move_clumps(state_, duration, dt, frame);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
   std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);
@@ -101,15 +103,20 @@ double Cycle::move(double duration, double dt) {
         const model::FixedComponents fixed = bodies.fixed[i];
         const double damping = own.damping(i);
         const Vec3 force = state_.force[i] + own.load(i);
-        kick(bodies.velocity[i], force, own.mass(i), duration, damping, fixed.translation(), work);
+        kick(bodies.velocity[i], force, own.mass(i), duration, damping, fixed.translation(), work,
+             FlowAt<Frame>(frame, bodies.position[i]));
         work.gravity(bodies.mass[i] * state_.model.gravity, bodies.velocity[i]);
         bodies.position[i] += dt * bodies.velocity[i];
         if (state_.turns())
           kick(bodies.spin[i], own.with_applied(i, state_.moment[i]), own.moment_of_inertia(i), duration,
-               damping, fixed.rotation(), work);
+               damping, fixed.rotation(), work, NoFlow{});
         own.count(i, work);
       }
-      const double squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
+      double squared = 0;
+      if constexpr (Frame::moves)
+        squared = (bodies.position[i] - frame.step.carried(state_.list.position[i])).squaredNorm();
+      else
+        squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
@@ -128,10 +135,14 @@ void Cycle::list_anew() {
   forces_ = assembly::ContactForceSum(state_.model, state_.turns());
 }
 
-double Cycle::move(double duration, double dt) {
-  if (EachItsOwn::needed(state_.model.bodies))
-    return state_.ledger ? move<KickWork, EachItsOwn>(duration, dt) : move<NoWork, EachItsOwn>(duration, dt);
-  return state_.ledger ? move<KickWork, AllAlike>(duration, dt) : move<NoWork, AllAlike>(duration, dt);
+template <class Frame>
+double Cycle::move(double duration, double dt, const Frame& frame) {
+  const bool own = EachItsOwn::needed(state_.model.bodies);
+  if constexpr (!Frame::moves)  // a ledger does not know the work of a cell that moves
+    if (state_.ledger)
+      return own ? move<KickWork, EachItsOwn>(duration, dt, frame)
+                 : move<KickWork, AllAlike>(duration, dt, frame);
+  return own ? move<NoWork, EachItsOwn>(duration, dt, frame) : move<NoWork, AllAlike>(duration, dt, frame);
 }
 
 void Cycle::choose_timestep() {
@@ -153,15 +164,25 @@ void Cycle::step() {
   if (counts_walls) before = assembly::wall_loads(state_.model);
   if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
   const double duration = 0.5 * (state_.dt + dt);
+  const bool deforms = state_.model.cell.deforms();
   Growth growth(state_, dt);
-  const double way = move(duration, dt);
+  double way = 0;
+  double room = half_skin;  // for bodies while the list holds
+  if (deforms) {
+    const assembly::CellStep cell(state_, dt);
+    way = move(duration, dt, assembly::MovingCell{cell});
+    room = cell.margin;
+  } else {
+    way = move(duration, dt, assembly::CellAtRest{});
+  }
   growth.apply();
-  const double room = half_skin - state_.list.growth;  // what growth leaves for ways
+  room -= state_.list.growth;  // what growth leaves for ways
   const bool expired = !(room >= 0 && way <= room * room && state_.list.wall_way <= half_skin);
   if (expired) list_anew();
   growth.count();
 
   model::Bodies& bodies = state_.model.bodies;
+  const Mat3 cell_step = dt * state_.model.cell.rate;  // by the edges that the list left
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
   forces_.advance(state_.model,
                   {.position = bodies.position,
@@ -170,7 +191,8 @@ void Cycle::step() {
                    .duration = dt,
                    .orientation = bodies.orientation,
                    .per_second = 1 / dt,
-                   .walls = walls_.any() ? &walls_ : nullptr},
+                   .walls = walls_.any() ? &walls_ : nullptr,
+                   .cell_step = deforms ? &cell_step : nullptr},
                   sum, state_.ledger ? &state_.ledger->integrals.contacts : nullptr);
   if (counts_walls)
     state_.ledger->integrals.walls -= work_on_walls(before, assembly::wall_loads(state_.model), walls_);

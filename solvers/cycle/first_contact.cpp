@@ -1,5 +1,6 @@
 #include "first_contact.hpp"
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/assembly/stiffness.hpp"
@@ -104,7 +105,13 @@ void add(const Meeting& body, const model::ContactRule& rule, std::int32_t index
 
 double fastest_approach(const assembly::State& state) {
   double ball = 0;
-  for (const Vec3& v : state.model.bodies.velocity) ball = std::max(ball, v.norm());
+  const model::Bodies& bodies = state.model.bodies;
+  const assembly::Fluctuation fluctuation(state.model.cell);
+  for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
+    ball = std::max(ball, fluctuation.of(bodies.velocity[i], bodies.position[i]).norm());
+  // The flow of a cell moves neighbours against each other, each by this at most.
+  ball +=
+      state.model.cell.flow_gradient().norm() * *std::max_element(bodies.radius.begin(), bodies.radius.end());
   double other = ball;
   const std::vector<model::WallMotion>& motions = state.model.wall_motions;
   for (std::size_t m = 0; m < motions.size(); ++m) {

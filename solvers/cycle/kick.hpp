@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/ledger.hpp"
 #include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/base/vec.hpp"
@@ -36,18 +37,46 @@ struct KickWork {
   assembly::EnergyIntegrals sum{};
 };
 
-/// Changes the free components of a velocity by the damped force of its body.
-template <class Work>
+/// Where nothing flows.
+struct NoFlow {
+  static constexpr bool moves = false;
+};
+
+/// The flow of a periodic cell at a place, and what the kick adds to it, m/s.
+struct Flow {
+  static constexpr bool moves = true;
+  Vec3 velocity;
+  Vec3 gain;
+};
+
+/// NoFlow or Flow, by what is known of the cell.
+template <class Frame>
+struct FlowAt : NoFlow {
+  FlowAt(const Frame& /*frame*/, const Vec3& /*position*/) {}
+};
+template <>
+struct FlowAt<assembly::MovingCell> : Flow {
+  FlowAt(const assembly::MovingCell& frame, const Vec3& position)
+      : Flow{frame.step.flow(position), frame.step.gained(position)} {}
+};
+
+/// Changes the free components of a velocity by the damped force of its body. In a flow the damping resists
+/// what the body moves by beyond it, and fixed components follow it, as any other would mean a different
+/// velocity for each image.
+template <class Work, class AnyFlow>
 void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, double damping,
-          std::uint8_t fixed, Work& work) {
+          std::uint8_t fixed, Work& work, const AnyFlow& flow) {
   for (int k = 0; k < 3; ++k) {
     if (((fixed >> k) & 1) != 0) {
       work.held(force[k], velocity[k]);
+      if constexpr (AnyFlow::moves) velocity[k] += flow.gain[k];
       continue;
     }
-    const double before = velocity[k];
+    double before = velocity[k];
+    if constexpr (AnyFlow::moves) before -= flow.velocity[k];
     const double resistance = assembly::local_damping_force(force[k], before, damping);
     velocity[k] += duration * (force[k] + resistance) / inertia;
+    if constexpr (AnyFlow::moves) velocity[k] += flow.gain[k];
     work.free(resistance, before, velocity[k]);
   }
 }

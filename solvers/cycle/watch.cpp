@@ -1,5 +1,6 @@
 #include "eigengrain/cycle/watch.hpp"
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/energies.hpp"
 #include "eigengrain/assembly/loads.hpp"
 
@@ -59,8 +60,12 @@ std::optional<Trouble> not_finite(const State& state) {
 std::optional<Trouble> too_fast(const State& state) {
   Ranking bad;
   const model::Bodies& bodies = state.model.bodies;
+  const assembly::Fluctuation fluctuation(state.model.cell);
+  // The flow of a cell takes neighbours past each other, each by this part of its radius at most.
+  const double strain = state.model.cell.flow_gradient().norm() * state.dt;
   for (std::size_t i = 0; i < bodies.position.size(); ++i) {
-    const double way = bodies.velocity[i].norm() * state.dt / bodies.radius[i];
+    const Vec3 velocity = fluctuation.of(bodies.velocity[i], bodies.position[i]);
+    const double way = velocity.norm() * state.dt / bodies.radius[i] + strain;
     if (way > largest_way) bad.add(way, bodies.identity[i]);
   }
   if (bad.empty()) return std::nullopt;
@@ -101,6 +106,7 @@ Trouble energy_trouble(const State& state, double found, double explained) {
 /// Whether the state holds all that can give energy to its bodies.
 bool closed(const State& state) {
   const assembly::Model& model = state.model;
+  if (model.cell.deforms()) return false;
   for (int k = 0; k < 3; ++k)
     if (model.cell.periodic[k] && model.gravity[k] != 0) return false;
   if (!model.wall_motions.empty()) return false;

@@ -1,5 +1,6 @@
 #include "eigengrain/relaxation/relax.hpp"
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/base/text.hpp"
 #include "eigengrain/base/timer.hpp"
@@ -62,6 +63,7 @@ void halt(State& state) {
   for (Vec3& v : clumps.velocity) v.setZero();
   for (Vec3& w : clumps.spin) w.setZero();
   for (Vec3& l : clumps.angular_momentum) l.setZero();
+  state.model.cell.rate.setZero();  // bodies have nothing of its flow any more
   state.dt = 0;
   state.next_dt = 0;
   assembly::renew_forces(state);
@@ -81,7 +83,8 @@ class Relaxation {
     auto own_damping = std::exchange(state_.model.bodies.damping, {});
     auto mass_factor = std::exchange(state_.model.bodies.mass_factor, {});
     auto ramp = std::exchange(state_.model.bodies.ramp, {});
-    // Walls rest while an equilibrium is sought, and move on afterwards.
+    // Walls and cell rest while an equilibrium is sought, and move on afterwards.
+    const Mat3 gradient = std::exchange(state_.model.cell.velocity_gradient, Mat3::Zero());
     auto motions = std::exchange(state_.model.wall_motions, {});
     auto poses = std::exchange(state_.model.wall_poses, {});
     halt(state_);
@@ -111,6 +114,7 @@ class Relaxation {
     state_.model.bodies.damping = std::move(own_damping);
     state_.model.bodies.mass_factor = std::move(mass_factor);
     state_.model.bodies.ramp = std::move(ramp);
+    state_.model.cell.velocity_gradient = gradient;
     state_.model.wall_motions = std::move(motions);
     state_.model.wall_poses = std::move(poses);
     result_.converged = at_rest_within(result_.end, options_.tolerance);
@@ -135,7 +139,14 @@ class Relaxation {
         : velocity(state.model.bodies.velocity),
           spin(state.model.bodies.spin),
           of_clumps(state.model.bodies.clumps.velocity),
-          clump_spin(state.model.bodies.clumps.spin) {}
+          clump_spin(state.model.bodies.clumps.spin) {
+      // The flow of the cell comes back with its first step.
+      const assembly::Fluctuation fluctuation(state.model.cell);
+      for (std::size_t i = 0; i < velocity.size(); ++i)
+        velocity[i] = fluctuation.of(velocity[i], state.model.bodies.position[i]);
+      for (std::size_t c = 0; c < of_clumps.size(); ++c)
+        of_clumps[c] = fluctuation.of(of_clumps[c], state.model.bodies.clumps.position[c]);
+    }
     void restore(State& state) const {
       model::Bodies& bodies = state.model.bodies;
       for (std::size_t i = 0; i < velocity.size(); ++i) {

@@ -79,7 +79,10 @@ std::vector<std::string> left_out(const model::Scene& scene, const assembly::Mod
   if (none([](const GroupSummary& g) { return g.history_bytes > 0; }))
     parts.push_back(
         fmt::format("contact history ({})", groups.empty() ? "nothing touches" : "no law needs one"));
-  if (!model.cell.any()) parts.emplace_back("periodic images");
+  if (!model.cell.any())
+    parts.emplace_back("periodic images");
+  else if (!model.cell.deforms())
+    parts.emplace_back("motion of the cell");
   if (model.wall_count() == 0)
     parts.emplace_back("walls");
   else if (model.wall_motions.empty())
@@ -106,6 +109,7 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
   if (std::any_of(model.bodies.fixed.begin(), model.bodies.fixed.end(), moves))
     parts.emplace_back("translation");
   if (!model.wall_motions.empty()) parts.emplace_back("motion of walls");
+  if (model.cell.deforms()) parts.emplace_back("motion of the cell");
   if (unknowns.rotations() > 0) parts.emplace_back("rotation");
   if (!model.bodies.clumps.empty()) parts.emplace_back("motion of clumps");
   if (!model.bodies.orientation.empty()) parts.emplace_back("orientation");

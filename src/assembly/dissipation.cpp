@@ -61,7 +61,7 @@ contact::Dissipation of_contact(const Group& group, std::size_t c, const contact
     if (old.bonded() && !next.bonded()) {
       contact::ContactMotion way;
       if constexpr (contact::in_total_form<Law>)
-        way = contact::contact_motion(geometry, trial.side(pair.a), trial.side(pair.b));
+        way = contact::contact_motion(geometry, trial.side(pair.a), trial.side(pair.b, pair.image));
       else
         way = motion;
       lost.bonds += released(group.law, motion, old, next, force, way);

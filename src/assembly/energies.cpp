@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/energies.hpp"
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/loads.hpp"
@@ -13,14 +14,15 @@ double factor_of(const model::Bodies& bodies, std::size_t row) {
 }
 
 /// Adds what a clump has, with its tensor of inertia as it lies at t.
-void add_clump(const State& state, std::int32_t clump, const BodyForces& gathered, Energies& result) {
+void add_clump(const State& state, std::int32_t clump, const Fluctuation& fluctuation,
+               const BodyForces& gathered, Energies& result) {
   const model::Bodies& bodies = state.model.bodies;
   const model::Clumps& clumps = bodies.clumps;
   const auto c = static_cast<std::size_t>(clump);
   const auto holder = static_cast<std::size_t>(clumps.holder(clump));
   const double factor = factor_of(bodies, holder);
   const double m = factor * clumps.mass[c];
-  const Vec3& v = clumps.velocity[c];
+  const Vec3 v = fluctuation.of(clumps.velocity[c], clumps.position[c]);
   const Vec3 a = (gathered.force[holder] + load_on(state.model, holder)) / m;
   const model::FixedComponents fixed = bodies.fixed[holder];
   const Vec3 w = model::angular_velocity(clumps, clump);
@@ -39,10 +41,11 @@ void add_clump(const State& state, std::int32_t clump, const BodyForces& gathere
 Energies energies_of(const State& state) {
   const model::Bodies& bodies = state.model.bodies;
   Energies result{.elastic = elastic_energy(state.model)};
+  const Fluctuation fluctuation(state.model.cell);
   for (std::size_t i = 0; i < bodies.position.size(); ++i) {
     if (bodies.clumps.of(static_cast<std::int32_t>(i)) != model::Clumps::none) continue;
     const double m = model::inertial_mass(bodies, i);
-    const Vec3& v = bodies.velocity[i];
+    const Vec3 v = fluctuation.of(bodies.velocity[i], bodies.position[i]);
     const Vec3 a = (state.force[i] + load_on(state.model, i)) / m;
     result.kinetic += 0.5 * m * v.squaredNorm();
     result.kinetic_product +=
@@ -60,7 +63,7 @@ Energies energies_of(const State& state) {
   if (bodies.clumps.empty()) return result;
   BodyForces gathered{state.force, state.moment};
   gather_members(bodies, {}, gathered);
-  for (std::int32_t c = 0; c < bodies.clumps.size(); ++c) add_clump(state, c, gathered, result);
+  for (std::int32_t c = 0; c < bodies.clumps.size(); ++c) add_clump(state, c, fluctuation, gathered, result);
   return result;
 }
 

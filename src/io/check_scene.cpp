@@ -207,6 +207,28 @@ void check_mass_scaling(const Section& root, const SceneDraft& draft) {
   }
 }
 
+void check_deformation(const Section& root, const SceneDraft& draft) {
+  const Mat3& gradient = draft.scene.cell.velocity_gradient;
+  if (gradient.isZero(0)) return;
+  constexpr std::string_view key = "periodic";
+  constexpr std::string_view rest = "or take out its velocity_gradient";
+  if (!draft.scene.surfaces.empty())
+    root.report(key, fmt::format("a cell that deforms, and {} that cannot; take planes instead, {}",
+                                 draft.scene.surfaces.front().name, rest));
+  for (const model::History& table : draft.scene.histories)
+    if (table.ledger)
+      root.report(key,
+                  fmt::format("a cell that deforms, whose work the ledger of \"{}\" does not count; take "
+                              "`energies` there, {}",
+                              table.file, rest));
+  if (!draft.planar) return;
+  const int normal = draft.planar->normal;
+  if (!gradient.row(normal).isZero(0) || !gradient.col(normal).isZero(0))
+    root.report(key, fmt::format("a velocity_gradient along {}, across the plane, where nothing can move; "
+                                 "write 0 in its row and its column",
+                                 "xyz"[normal]));
+}
+
 void check_placement(const Section& root, const SceneDraft& draft) {
   check_walls(draft, root.diagnostics());
   check_coincidence(draft, root.diagnostics());

@@ -21,8 +21,8 @@ struct Swept {
 Vec3 folded(const Vec3& x, const model::PeriodicCell& cell, double margin) {
   Vec3 result = cell.wrapped(x);
   for (int k = 0; k < 3; ++k)
-    if (cell.periodic[k] && result[k] > cell.origin[k] + cell.lengths[k] - margin)
-      result[k] -= cell.lengths[k];
+    if (cell.periodic[k] && result[k] > cell.origin[k] + cell.edges(k, k) - margin)
+      result[k] -= cell.edges(k, k);
   return result;
 }
 

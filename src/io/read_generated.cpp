@@ -37,7 +37,7 @@ void add(const Balls& made, const Section& section, const BallKind& kind, BallLi
 
 /// Whether a box spans the cell along an axis, so that it repeats there.
 bool spans(const Region& region, const model::PeriodicCell& cell, int axis) {
-  const double length = cell.lengths[axis];
+  const double length = cell.edges(axis, axis);
   const double tolerance = generate::negligible * length;
   return std::abs(region.lower[axis] - cell.origin[axis]) <= tolerance &&
          std::abs(region.upper[axis] - cell.origin[axis] - length) <= tolerance;
@@ -53,7 +53,8 @@ std::optional<Region> region_of_cell(const Section& section, const model::Period
                           : ", which says where the balls go");
     return std::nullopt;
   }
-  return Region{.lower = cell.origin, .upper = cell.origin + cell.lengths, .periodic = cell.periodic};
+  return Region{
+      .lower = cell.origin, .upper = cell.origin + cell.edges.diagonal(), .periodic = cell.periodic};
 }
 
 std::optional<Region> read_region(const Section& section, const model::PeriodicCell& cell) {
@@ -75,10 +76,10 @@ std::optional<Region> read_region(const Section& section, const model::PeriodicC
     if (spans(region, cell, k)) {
       region.periodic[k] = true;
       region.lower[k] = cell.origin[k];
-      region.upper[k] = cell.origin[k] + cell.lengths[k];
-    } else if (region.lower[k] < cell.origin[k] || region.upper[k] > cell.origin[k] + cell.lengths[k]) {
+      region.upper[k] = cell.origin[k] + cell.edges(k, k);
+    } else if (region.lower[k] < cell.origin[k] || region.upper[k] > cell.origin[k] + cell.edges(k, k)) {
       box->report(fmt::format("reaches out of the periodic cell, which spans {} to {} m along {}",
-                              cell.origin[k], cell.origin[k] + cell.lengths[k], axis_names[k]));
+                              cell.origin[k], cell.origin[k] + cell.edges(k, k), axis_names[k]));
       return std::nullopt;
     }
   }

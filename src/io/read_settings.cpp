@@ -12,6 +12,41 @@ void read_gravity(const Section& root, SceneDraft& draft) {
   draft.scene.gravity = root.vector("gravity").value_or(Vec3::Zero());
 }
 
+namespace {
+
+constexpr std::string_view axis_names = "xyz";
+
+/// Reports entries that would move what does not repeat.
+void check_gradient(const Section& section, const model::PeriodicCell& cell) {
+  const Mat3& gradient = cell.velocity_gradient;
+  if (!gradient.allFinite()) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      if (gradient(i, j) == 0) continue;
+      const int open = !cell.periodic[static_cast<std::size_t>(i)] ? i : j;
+      if (cell.periodic[static_cast<std::size_t>(open)]) continue;
+      section.report(
+          "velocity_gradient",
+          fmt::format("{0} /s in row {1}, column {2}, and the cell does not repeat along {3}; write 0 "
+                      "there, or add {3} to axes",
+                      gradient(i, j), i + 1, j + 1, axis_names[static_cast<std::size_t>(open)]));
+    }
+}
+
+void read_gradient(const Section& section, model::PeriodicCell& cell) {
+  const auto rows = section.vectors("velocity_gradient");
+  if (!rows || rows->empty()) return;
+  if (rows->size() != 3)
+    return section.report(
+        "velocity_gradient",
+        fmt::format("{} rows; three are wanted, e.g. [[0, 0, 0.5], [0, 0, 0], [0, 0, 0]]", rows->size()));
+  for (int i = 0; i < 3; ++i)
+    cell.velocity_gradient.row(i) = (*rows)[static_cast<std::size_t>(i)].transpose();
+  check_gradient(section, cell);
+}
+
+}  // namespace
+
 void read_periodic(const Section& root, SceneDraft& draft) {
   const auto section = root.section("periodic");
   if (!section) return;
@@ -21,7 +56,7 @@ void read_periodic(const Section& root, SceneDraft& draft) {
   const auto axes = section->texts("axes");
   if (axes && axes->empty()) section->report("axes", "empty; name at least one axis, or remove periodic");
   if (!lengths || !origin || !axes) return;
-  model::PeriodicCell cell{.origin = *origin, .lengths = *lengths};
+  model::PeriodicCell cell = model::PeriodicCell::box(*origin, *lengths, {});
   for (const std::string& axis : *axes) {
     const int k = axis[0] - 'x';
     if ((*lengths)[k] > 0) {
@@ -31,6 +66,7 @@ void read_periodic(const Section& root, SceneDraft& draft) {
                                          (*lengths)[k], axis));
     }
   }
+  read_gradient(*section, cell);
   draft.scene.cell = cell;
 }
 

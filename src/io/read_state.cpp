@@ -166,6 +166,31 @@ void read_list(const h5::File& hdf5, assembly::State& state) {
       hdf5.read<Vec3>(layout::list_position, rows == 0 ? 0 : state.model.bodies.position.size());
 }
 
+Mat3 read_matrix(const h5::File& hdf5, const std::string& path) {
+  const std::vector<double> rows = hdf5.read_doubles(path, 3, 3);
+  const Mat3 matrix = Mat3(rows.data()).transpose();
+  if (!matrix.allFinite()) throw h5::Error(fmt::format("{} is not finite", path));
+  return matrix;
+}
+
+/// Puts the periodic cell where it was, if it has moved; its velocity gradient may be a new one.
+void read_cell(const h5::File& hdf5, const model::Scene& stored, const fs::path& file,
+               assembly::State& state) {
+  model::PeriodicCell& cell = state.model.cell;
+  state.list.edges = cell.edges;
+  if (!hdf5.has(layout::cell)) return;
+  if (state.settings.cell.origin != stored.cell.origin || state.settings.cell.edges != stored.cell.edges)
+    refuse(file,
+           "periodic: another box or origin than that of the state, whose cell has moved since; leave "
+           "them out (a velocity_gradient may change), or start from the scene");
+  cell.edges = read_matrix(hdf5, layout::cell_edges);
+  cell.rate = read_matrix(hdf5, layout::cell_rate);
+  state.list.edges = read_matrix(hdf5, layout::list_cell_edges);
+  for (int k = 0; k < 3; ++k)
+    if (cell.periodic[static_cast<std::size_t>(k)] && !(cell.edges.col(k).norm() > 0))
+      throw h5::Error("an edge of the periodic cell is zero");
+}
+
 /// The settings name files of meshes, which may have changed since.
 void refuse_changed_meshes(const h5::File& hdf5, const model::Scene& stored, const fs::path& file) {
   if (!hdf5.has(layout::surfaces)) return;
@@ -286,6 +311,7 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   refuse_changed_meshes(hdf5, stored, file);
   if (const auto problem = forbidden_change(stored, state.settings)) refuse(file, *problem);
   assembly::set_surroundings(state.model, state.settings);
+  read_cell(hdf5, stored, file, state);
   read_walls(hdf5, file, state);
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());
   if (surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings))

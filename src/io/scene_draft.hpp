@@ -103,6 +103,9 @@ void check_scene(const Section& root, const SceneDraft& draft);
 /// Where balls may start: not behind walls, no two at one place. Later they may be wherever forces put them.
 void check_placement(const Section& root, const SceneDraft& draft);
 
+/// What a cell that deforms cannot have: meshes, tables of the energy ledger, motion across a plane.
+void check_deformation(const Section& root, const SceneDraft& draft);
+
 /// Whether a planar scene is one: balls in one plane, nothing that drives them out of it.
 void check_planar(const Section& root, const SceneDraft& draft);
 

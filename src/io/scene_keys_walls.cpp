@@ -200,6 +200,15 @@ std::vector<KeyDescription> wall_keys() {
        .words = {"x", "y", "z"},
        .example = "[x, y]",
        .description = "the axes along which the cell repeats"},
+      {.path = "periodic.velocity_gradient",
+       .kind = vectors,
+       .unit = "1/s",
+       .fallback = "[]",
+       .example = "[[0, 0, 0.5], [0, 0, 0], [0, 0, 0]]",
+       .description =
+           "three rows, L: in a run the edges H of the cell follow dH/dt = L H, and bodies take part "
+           "in the flow, with the velocities that they have beside it. L_ij is the velocity along i "
+           "for each metre along j; 0 but between axes that repeat. The example shears x over z"},
   };
 }
 

@@ -124,6 +124,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
     read_clumps(section, into);
   });
   check_scene(root, draft);
+  check_deformation(root, draft);
   check_planar(root, draft);
   take_from_materials(draft, diagnostics);
   check_mass_scaling(root, draft);
@@ -155,6 +156,7 @@ model::Scene read_settings_text(std::string_view text, const std::filesystem::pa
     take_materials_of_balls(section, into, material_of_ball);
   });
   check_scene(root, draft);
+  check_deformation(root, draft);
   take_from_materials(draft, diagnostics);
   check_mass_scaling(root, draft);
   diagnostics.throw_if_any();

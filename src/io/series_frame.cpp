@@ -136,14 +136,17 @@ void write_frame(const std::filesystem::path& file, const std::string& xml, cons
   output.commit();
 }
 
+Tensor rows_of(const Mat3& matrix) {
+  Tensor rows;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      rows[static_cast<std::size_t>(3 * row + column)] = matrix(row, column);
+  return rows;
+}
+
 std::vector<Tensor> stresses(const assembly::Model& model) {
   std::vector<Tensor> result;
-  for (const Mat3& stress : measures::body_stresses(model)) {
-    Tensor& rows = result.emplace_back();
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column)
-        rows[static_cast<std::size_t>(3 * row + column)] = stress(row, column);
-  }
+  for (const Mat3& stress : measures::body_stresses(model)) result.push_back(rows_of(stress));
   return result;
 }
 
@@ -171,6 +174,13 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
       "TimeValue", 1, [&] { return std::vector{state.time}; }, one_tuple);
   xml += arrays.add(
       "Step", 1, [&] { return std::vector{state.step}; }, one_tuple);
+  const model::PeriodicCell& cell = state.model.cell;
+  if (cell.any()) {
+    xml += arrays.add(
+        "CellOrigin", 1, [&] { return std::vector{cell.origin}; }, one_tuple);
+    xml += arrays.add(
+        "CellEdges", 1, [&] { return std::vector{rows_of(cell.edges)}; }, one_tuple);
+  }
   xml += fmt::format("</FieldData>\n<Piece NumberOfPoints=\"{0}\" NumberOfCells=\"{0}\">\n", count);
   xml += "<PointData Scalars=\"radius\">\n";
   xml += column("radius", bodies.radius);

@@ -8,8 +8,9 @@ namespace eigengrain::io {
 
 /// Writes the state as an UnstructuredGrid of VTK (.vtu): one vertex cell a ball, in the order of identity.
 /// The numbers stand as they are in memory behind the XML ("raw appended"). The memory that it takes beside
-/// the state is that of the largest array and 12 bytes a ball. With `stress` there is the mean stress of
-/// each.
+/// the state is that of the largest array and 12 bytes a ball. Of a periodic cell the field data have
+/// origin and edges (the columns of the matrix, which VTK has row by row). With `stress` there is the mean
+/// stress of each.
 void write_frame(const std::filesystem::path& file, const assembly::State& state, bool stress);
 
 /// The triangles of all surfaces where they are.

@@ -56,7 +56,7 @@ std::optional<std::string> forbidden_change(const model::Scene& stored, const mo
 }
 
 bool surroundings_moved(const model::Scene& stored, const model::Scene& now) {
-  return now.cell.origin != stored.cell.origin || now.cell.lengths != stored.cell.lengths ||
+  return now.cell.origin != stored.cell.origin || now.cell.edges != stored.cell.edges ||
          !std::equal(now.walls.begin(), now.walls.end(), stored.walls.begin(), stored.walls.end(),
                      same_place) ||
          !std::equal(now.surfaces.begin(), now.surfaces.end(), stored.surfaces.begin(), stored.surfaces.end(),

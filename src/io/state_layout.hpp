@@ -29,10 +29,17 @@ void for_each_own_column(Bodies& balls, const Visit& visit) {
   visit("/bodies/mass_factor", balls.mass_factor);
 }
 
+/// Whether the periodic cell is not what the settings say.
+inline bool cell_has_moved(const assembly::State& state) {
+  const model::PeriodicCell& cell = state.model.cell;
+  return cell.edges != state.settings.cell.edges || !cell.rate.isZero(0);
+}
+
 /// The least schema that says all of a state, so that older programs read what they understand: 2 with
-/// clumps, 3 where bodies have loads, an α, a ramp of the radius or an inertial mass of their own.
+/// clumps, 3 where bodies have loads, an α, a ramp of the radius or an inertial mass of their own, and where
+/// the periodic cell has moved.
 inline std::int64_t schema_of(const assembly::State& state) {
-  bool own = false;
+  bool own = cell_has_moved(state);
   for_each_own_column(state.model.bodies,
                       [&](const char* /*path*/, const auto& column) { own = own || !column.empty(); });
   if (own) return 3;
@@ -54,6 +61,10 @@ inline const std::string groups = "/groups";
 inline const std::string progress = "/stages";
 inline const std::string list_position = "/neighbour_list/position";
 inline const std::string list_wall_lever = "/neighbour_list/wall_lever";
+inline const std::string cell = "/cell";
+inline const std::string cell_edges = "/cell/edges";
+inline const std::string cell_rate = "/cell/rate";
+inline const std::string list_cell_edges = "/neighbour_list/cell_edges";
 inline const std::string surfaces = "/surfaces";
 inline const std::string surface_fingerprint = "/surfaces/fingerprint";
 inline const std::string walls = "/moving_walls";

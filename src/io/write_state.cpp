@@ -174,6 +174,21 @@ void write_stages(const assembly::State& state, h5::File& file) {
   });
 }
 
+/// A matrix as three rows.
+void write_matrix(const Mat3& matrix, const std::string& path, h5::File& file) {
+  const Mat3 rows = matrix.transpose();  // columns are contiguous
+  file.write_rows(path, h5::Number::f64, rows.data(), 3, 3);
+}
+
+/// Only where the cell is not what the settings say.
+void write_cell(const assembly::State& state, h5::File& file) {
+  if (!layout::cell_has_moved(state)) return;
+  file.add_group(layout::cell);
+  write_matrix(state.model.cell.edges, layout::cell_edges, file);
+  write_matrix(state.model.cell.rate, layout::cell_rate, file);
+  write_matrix(state.list.edges, layout::list_cell_edges, file);
+}
+
 void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::root, "format", layout::format);
   file.set(layout::root, "schema", layout::schema_of(state));
@@ -189,6 +204,7 @@ void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::list, "rebuilds", state.list.rebuilds);
   if (!state.model.bodies.ramp.empty()) file.set(layout::list, "growth", state.list.growth);
   file.write(layout::list_position, state.list.position);
+  write_cell(state, file);
   write_walls(state, file);
   if (!state.model.surfaces.empty()) {
     file.add_group(layout::surfaces);

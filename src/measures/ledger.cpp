@@ -163,6 +163,11 @@ void begin_ledger(State& state) {
     throw InputError(
         "histories: a ledger has no meaning where masses are scaled; leave `ledger` out of what the table "
         "holds, or remove mass_scaling");
+  if (state.model.cell.deforms())
+    throw InputError(
+        "histories: the ledger does not count the work of a periodic cell that deforms, or did in the last "
+        "step; leave `ledger` out of what the table holds (after one step with a velocity_gradient of zero "
+        "it may begin)");
   const Motion motion = motion_of(state);
   const ElasticEnergy elastic = elastic_energy(state.model);
   assembly::EnergyLedger ledger{.initial = motion.kinetic + elastic.total()};

@@ -66,12 +66,12 @@ std::optional<Mat3> velocity_gradient(const Window& window, const model::Bodies&
   for (std::int32_t i = 0; i < bodies.size(); ++i) {
     if (bodies.clumps.owner(i) != i) continue;
     const std::int32_t clump = bodies.clumps.of(i);
-    window.for_each_inside(model::centre_of(bodies, i), [&](const Vec3& image) {
+    window.for_each_inside(model::centre_of(bodies, i), [&](const Vec3& image, const Vec3& of_cell) {
       position.push_back(image);
       if (clump != model::Clumps::none)
-        velocity.push_back(bodies.clumps.velocity[clump]);
+        velocity.emplace_back(bodies.clumps.velocity[clump] + of_cell);
       else
-        velocity.push_back(bodies.velocity.empty() ? Vec3(Vec3::Zero()) : bodies.velocity[i]);
+        velocity.emplace_back(bodies.velocity.empty() ? of_cell : Vec3(bodies.velocity[i] + of_cell));
     });
   }
   centre(position);
@@ -112,7 +112,7 @@ Fabric fabric(const Window& window, const assembly::Model& model, std::span<cons
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto row = static_cast<std::int32_t>(i);
     if (model.bodies.clumps.owner(row) != row) continue;
-    window.for_each_inside(model::centre_of(model.bodies, row), [&](const Vec3&) { ++seen[i]; });
+    window.for_each_inside(model::centre_of(model.bodies, row), [&](const Vec3&, const Vec3&) { ++seen[i]; });
     result.bodies += seen[i];
     if (rattlers[i]) result.rattlers += seen[i];
   }

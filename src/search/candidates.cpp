@@ -24,15 +24,15 @@ constexpr std::int64_t chunk_size = 1024;
 
 /// A ball that touches its own image number 128 would be reported below too, but only after a search
 /// through as many cells as the cell is too small.
-void require_cell_not_tiny(std::span<const double> radii, const Vec3& lengths, double reach) {
+void require_cell_not_tiny(std::span<const double> radii, const Vec3& heights, double reach) {
   const double largest = *std::max_element(radii.begin(), radii.end());
   for (int k = 0; k < 3; ++k) {
-    const bool repeats = lengths[k] > 0;
-    if (!repeats || 2 * largest + reach < (image_limit + 1) * lengths[k]) continue;
+    const bool repeats = heights[k] > 0;
+    if (!repeats || 2 * largest + reach < (image_limit + 1) * heights[k]) continue;
     throw InputError(fmt::format(
         "the periodic cell is {:g} m long along {}: a ball of radius {:g} m touches more than {} images of "
         "itself there; enlarge the cell (repeat its contents)",
-        lengths[k], "xyz"[k], largest, image_limit));
+        heights[k], "xyz"[k], largest, image_limit));
   }
 }
 
@@ -97,7 +97,7 @@ PairSearch search_pairs(std::span<const Vec3> centres, std::span<const double> r
   if (centres.empty()) return {};
 
   const WrappedBodies wrapped(centres, cell);
-  require_cell_not_tiny(radii, wrapped.lengths(), reach);
+  require_cell_not_tiny(radii, wrapped.heights(), reach);
   const SizeLevels levels(wrapped, radii, reach);
 
   const auto bodies = static_cast<std::int32_t>(centres.size());

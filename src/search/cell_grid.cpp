@@ -31,21 +31,22 @@ GridAxis GridAxis::periodic(double origin, double length, double edge) {
 
 CellGrid::CellGrid(const WrappedBodies& bodies, std::span<const std::int32_t> members, double edge) {
   set_axes(bodies, members, edge);
-  fill(bodies.centres(), members, choose_buckets(static_cast<std::int64_t>(members.size())));
+  fill(bodies, members, choose_buckets(static_cast<std::int64_t>(members.size())));
 }
 
 void CellGrid::set_axes(const WrappedBodies& bodies, std::span<const std::int32_t> members, double edge) {
-  const auto centre = [&](std::int32_t body) { return bodies.centres()[body]; };
-  Box box{.lower = centre(members.front()), .upper = centre(members.front())};
+  const auto place = [&](std::int32_t body) { return bodies.places()[body]; };
+  Box box{.lower = place(members.front()), .upper = place(members.front())};
   for (const std::int32_t body : members) {
-    box.lower = box.lower.cwiseMin(centre(body));
-    box.upper = box.upper.cwiseMax(centre(body));
+    box.lower = box.lower.cwiseMin(place(body));
+    box.upper = box.upper.cwiseMax(place(body));
   }
   const model::PeriodicCell& cell = bodies.cell();
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<std::size_t>(k);
-    axes_[axis] = cell.periodic[axis] ? GridAxis::periodic(cell.origin[k], cell.lengths[k], edge)
-                                      : GridAxis::open(box.lower[k], box.upper[k], edge);
+    axes_[axis] = cell.periodic[axis]
+                      ? GridAxis::periodic(cell.origin[k], bodies.lengths()[k], bodies.stretch()[k] * edge)
+                      : GridAxis::open(box.lower[k], box.upper[k], edge);
   }
 }
 
@@ -65,15 +66,17 @@ std::int64_t CellGrid::choose_buckets(std::int64_t members) {
   return static_cast<std::int64_t>(table) + piece - 1;
 }
 
-void CellGrid::fill(std::span<const Vec3> centres, std::span<const std::int32_t> members,
+void CellGrid::fill(const WrappedBodies& bodies, std::span<const std::int32_t> members,
                     std::int64_t buckets) {
+  const std::span<const Vec3> centres = bodies.centres();
+  const std::span<const Vec3> places = bodies.places();
   const auto count = static_cast<std::int64_t>(members.size());
   std::vector<std::int32_t> bucket_of(members.size());
   for_each_index(count, [&](std::int64_t m) {
-    const Vec3& centre = centres[static_cast<std::size_t>(members[m])];
-    const std::int64_t x = axes_[0].cell_of(centre.x());
-    const std::int64_t y = axes_[1].cell_of(centre.y());
-    const std::int64_t z = axes_[2].cell_of(centre.z());
+    const Vec3& place = places[static_cast<std::size_t>(members[m])];
+    const std::int64_t x = axes_[0].cell_of(place.x());
+    const std::int64_t y = axes_[1].cell_of(place.y());
+    const std::int64_t z = axes_[2].cell_of(place.z());
     const std::int64_t bucket = dense_ ? dense_bucket(x, y, z) : table_bucket(x, y, z);
     bucket_of[m] = static_cast<std::int32_t>(bucket);
   });

@@ -92,7 +92,7 @@ class GridAxis {
 ///
 /// In a compact domain every cell has its own bucket, in rows along x. Otherwise pieces of such rows are
 /// put at pseudo-random places of a table: unlike a plain wrapped grid this has no bad case for bodies in a
-/// regular pattern.
+/// regular pattern. Cells are boxes in the places of bodies (WrappedBodies).
 class CellGrid {
  public:
   struct Entry {
@@ -103,13 +103,14 @@ class CellGrid {
   /// members: the bodies of this grid, at least one; edge: the least length of a cell, m.
   CellGrid(const WrappedBodies& bodies, std::span<const std::int32_t> members, double edge);
 
-  /// Calls visit(entries, image) such that every copy (body, image) within the box centre ± range occurs.
+  /// Calls visit(entries, image) such that every copy (body, image) with a place within the box place ± range
+  /// occurs.
   template <class Visit>
-  void visit_near(const Vec3& centre, double range, const Visit& visit) const {
+  void visit_near(const Vec3& place, const Vec3& range, const Visit& visit) const {
     std::array<CellRange, 3> cells;
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
-      cells[axis] = axes_[axis].cells_of(centre[k] - range, centre[k] + range);
+      cells[axis] = axes_[axis].cells_of(place[k] - range[k], place[k] + range[k]);
       if (cells[axis].last < cells[axis].first) return;
     }
     axes_[2].for_each_image(cells[2], [&](std::int64_t z, std::int64_t last_z, std::int32_t image_z) {
@@ -165,7 +166,7 @@ class CellGrid {
 
   void set_axes(const WrappedBodies& bodies, std::span<const std::int32_t> members, double edge);
   std::int64_t choose_buckets(std::int64_t members);
-  void fill(std::span<const Vec3> centres, std::span<const std::int32_t> members, std::int64_t buckets);
+  void fill(const WrappedBodies& bodies, std::span<const std::int32_t> members, std::int64_t buckets);
 
   std::array<GridAxis, 3> axes_;
   bool dense_ = true;

@@ -51,12 +51,14 @@ void PairSearcher::preselect(std::int32_t body, const SizeLevel& level, std::int
   const double size = radii_[body] + 0.5 * reach_;
   // The factor covers the rounding of every expression that is relative to the distance itself.
   const double range = (size + level.largest) * (1 + 0x1p-40) + wrapped_.slack();
-  level.grid.visit_near(centre, range, [&](std::span<const CellGrid::Entry> entries, const WideImage& image) {
-    ++result.rows_visited;
-    result.distance_tests += std::ssize(entries);
-    // Instead of all bodies of an image, move the one that looks at them the other way.
-    add_hits(entries, centre - shift(image), range * range, least_partner, image);
-  });
+  level.grid.visit_near(wrapped_.places()[body], range * wrapped_.stretch(),
+                        [&](std::span<const CellGrid::Entry> entries, const WideImage& image) {
+                          ++result.rows_visited;
+                          result.distance_tests += std::ssize(entries);
+                          // Instead of all bodies of an image, move the one that looks at them the other way.
+                          add_hits(entries, centre - wrapped_.shift(image), range * range, least_partner,
+                                   image);
+                        });
 }
 
 void PairSearcher::add_hits(std::span<const CellGrid::Entry> entries, const Vec3& centre,
@@ -84,11 +86,6 @@ void PairSearcher::add_pair(std::int32_t body, const Hit& hit, FoundPairs& resul
   }
 }
 
-Vec3 PairSearcher::shift(const WideImage& image) const {
-  const Vec3& lengths = wrapped_.lengths();
-  return {image[0] * lengths.x(), image[1] * lengths.y(), image[2] * lengths.z()};
-}
-
 /// In the order a <= b, with the image between the centres as given instead of their wrapped copies.
 WidePair PairSearcher::pair_of(std::int32_t body, const Hit& hit) const {
   const WideImage& home = wrapped_.home(body);
@@ -105,7 +102,7 @@ WidePair PairSearcher::pair_of(std::int32_t body, const Hit& hit) const {
 bool PairSearcher::within_reach(const WidePair& pair) const {
   const auto a = static_cast<std::size_t>(pair.a);
   const auto b = static_cast<std::size_t>(pair.b);
-  const Vec3 branch = centres_[b] + shift(pair.image) - centres_[a];
+  const Vec3 branch = centres_[b] + wrapped_.shift(pair.image) - centres_[a];
   const double limit = radii_[a] + radii_[b] + reach_;
   return branch.squaredNorm() <= limit * limit;
 }

@@ -63,7 +63,6 @@ class PairSearcher {
   void add_hits(std::span<const CellGrid::Entry> entries, const Vec3& centre, double squared_range,
                 std::int32_t least_partner, const WideImage& image);
   void add_pair(std::int32_t body, const Hit& hit, FoundPairs& result);
-  Vec3 shift(const WideImage& image) const;
   WidePair pair_of(std::int32_t body, const Hit& hit) const;
   bool within_reach(const WidePair& pair) const;
 

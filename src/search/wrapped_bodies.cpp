@@ -16,8 +16,7 @@ namespace {
 /// would not fit into 32 bits.
 constexpr double farthest_home = 536870912.0;  // 2^29
 
-void require_near(double coordinate, double origin, double length, int axis) {
-  const double cells = (coordinate - origin) / length;
+void require_near(double cells, double coordinate, double length, int axis) {
   if (std::abs(cells) < farthest_home) return;
   throw InputError(fmt::format(
       "a centre at {} = {:g} m lies {:g} cell lengths outside of the periodic cell (length {:g} m); "
@@ -25,10 +24,16 @@ void require_near(double coordinate, double origin, double length, int axis) {
       "xyz"[axis], coordinate, cells, length));
 }
 
-/// The clamp is there for a centre that is not a number: it touches nothing, but must not become an index.
-double home_along(double x, double origin, double length) {
-  const double cells = std::floor((x - origin) / length);
+/// The cell of a place. The clamp is there for a centre that is not a number: it touches nothing, but must
+/// not become an index.
+double clamped_home(double place) {
+  const double cells = std::floor(place);
   return std::max(std::min(farthest_home, cells), -farthest_home);
+}
+
+/// Every step of the way from a centre to its copy and its cell rounds a number no greater than `greatest`.
+double slack_for(double greatest) {
+  return 0x1p-48 * greatest;
 }
 
 }  // namespace
@@ -47,30 +52,62 @@ WrappedBodies::WrappedBodies(std::span<const Vec3> centres, const model::Periodi
   if (centres.empty() || !cell.any()) return;
   const Box box = bounding_box(centres);
   for (int k = 0; k < 3; ++k) {
-    if (!cell.periodic[k]) continue;
-    const double length = cell.lengths[k];
-    EIGENGRAIN_ASSERT(length > 0 && std::isfinite(length), k, length);
-    require_near(box.lower[k], cell.origin[k], length, k);
-    require_near(box.upper[k], cell.origin[k], length, k);
-    lengths_[k] = length;
-    // Every step of the way from a centre to its copy and its cell rounds a number no greater than this.
-    const double greatest =
-        std::max(std::abs(box.lower[k]), std::abs(box.upper[k])) + std::abs(cell.origin[k]) + length;
-    slack_ = std::max(slack_, 0x1p-48 * greatest);
+    if (!cell.periodic[static_cast<std::size_t>(k)]) continue;
+    repeating_.edges.col(k) = cell.edges.col(k);
+    lengths_[k] = cell.edges.col(k).norm();
+    EIGENGRAIN_ASSERT(lengths_[k] > 0 && std::isfinite(lengths_[k]), k, lengths_[k]);
   }
-  wrap();
-}
-
-void WrappedBodies::wrap() {
   copies_.assign(given_.begin(), given_.end());
   homes_.resize(given_.size());
+  if (cell.orthogonal())
+    wrap_into_box(box);
+  else
+    wrap_into_slanted(box);
+}
+
+void WrappedBodies::wrap_into_box(const Box& box) {
+  for (int k = 0; k < 3; ++k) {
+    if (!cell_.periodic[static_cast<std::size_t>(k)]) continue;
+    for (const double x : {box.lower[k], box.upper[k]})
+      require_near((x - cell_.origin[k]) / lengths_[k], x, lengths_[k], k);
+    slack_ = std::max(slack_, slack_for(std::max(std::abs(box.lower[k]), std::abs(box.upper[k])) +
+                                        std::abs(cell_.origin[k]) + lengths_[k]));
+  }
   for_each_index(static_cast<std::int64_t>(given_.size()), [&](std::int64_t i) {
     const auto body = static_cast<std::size_t>(i);
     for (int k = 0; k < 3; ++k) {
-      if (!cell_.periodic[k]) continue;
-      const double home = home_along(given_[body][k], cell_.origin[k], lengths_[k]);
-      homes_[body][k] = static_cast<std::int32_t>(home);
+      if (!cell_.periodic[static_cast<std::size_t>(k)]) continue;
+      const double home = clamped_home((given_[body][k] - cell_.origin[k]) / lengths_[k]);
+      homes_[body][static_cast<std::size_t>(k)] = static_cast<std::int32_t>(home);
       copies_[body][k] -= home * lengths_[k];
+    }
+  });
+}
+
+void WrappedBodies::wrap_into_slanted(const Box& box) {
+  const Mat3 inverse = cell_.inverse();
+  const Vec3 farthest = (box.lower - cell_.origin).cwiseAbs().cwiseMax((box.upper - cell_.origin).cwiseAbs());
+  const Vec3 most_cells = inverse.cwiseAbs() * farthest;  // of any centre, along each edge
+  for (int k = 0; k < 3; ++k) {
+    if (!cell_.periodic[static_cast<std::size_t>(k)]) continue;
+    stretch_[k] = lengths_[k] * inverse.row(k).norm();
+    require_near(most_cells[k], box.upper[k], lengths_[k], k);
+    // Of places, of the parts of shifts, and of centres.
+    slack_ = std::max(slack_, slack_for(3 * lengths_[k] * (most_cells[k] + 1) + std::abs(cell_.origin[k])));
+    slack_ = std::max(slack_, slack_for(farthest[k] + std::abs(cell_.origin[k])));
+  }
+  slack_ *= 3;  // for the three parts of a shift
+  places_.resize(given_.size());
+  for_each_index(static_cast<std::int64_t>(given_.size()), [&](std::int64_t i) {
+    const auto body = static_cast<std::size_t>(i);
+    const Vec3 cells = inverse * (given_[body] - cell_.origin);
+    places_[body] = given_[body];
+    for (int k = 0; k < 3; ++k) {
+      if (!cell_.periodic[static_cast<std::size_t>(k)]) continue;
+      const double home = clamped_home(cells[k]);
+      homes_[body][static_cast<std::size_t>(k)] = static_cast<std::int32_t>(home);
+      copies_[body] -= home * cell_.edges.col(k);
+      places_[body][k] = cell_.origin[k] + (cells[k] - home) * lengths_[k];
     }
   });
 }

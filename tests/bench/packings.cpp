@@ -30,7 +30,8 @@ model::Scene jittered_lattice(std::int64_t bodies) {
   scene.name = "jittered lattice";
   scene.materials.push_back({"grain", 2500.0});
   scene.contacts.push_back({.law = "linear", .parameters = {1e5, 5e4, 0.5, 0.0, 0.0, 0.0}});
-  scene.cell = {Vec3::Zero(), edge * Vec3(cells[0], cells[1], cells[2]), {true, true, true}};
+  scene.cell =
+      model::PeriodicCell::box(Vec3::Zero(), edge * Vec3(cells[0], cells[1], cells[2]), {true, true, true});
 
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> jitter(-0.05, 0.05);
@@ -102,7 +103,7 @@ Cloud cloud(std::int64_t bodies, double ratio) {
   b.material.assign(b.radius.size(), 0);
   b.fixed.assign(b.radius.size(), {});
   const double edge = std::cbrt(solid / 0.6);
-  result.cell = {Vec3::Zero(), Vec3::Constant(edge), {true, true, true}};
+  result.cell = model::PeriodicCell::box(Vec3::Zero(), Vec3::Constant(edge), {true, true, true});
   for (std::int64_t i = 0; i < bodies; ++i)
     b.position.push_back(edge * Vec3(uniform(random), uniform(random), uniform(random)));
   model::sort_along_curve(b);

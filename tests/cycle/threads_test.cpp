@@ -77,7 +77,7 @@ double farthest(const State& a, const State& b) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     Vec3 apart = x[i] - y[i];
     for (int k = 0; k < 3; ++k)  // wrapped or not
-      if (cell.periodic[k]) apart[k] -= cell.lengths[k] * std::round(apart[k] / cell.lengths[k]);
+      if (cell.periodic[k]) apart[k] -= cell.edges(k, k) * std::round(apart[k] / cell.edges(k, k));
     most = std::max(most, apart.norm());
   }
   return most;

@@ -47,6 +47,7 @@ inline std::string bits_of(const assembly::State& state) {
     add(std::vector<Vec3>{place.pose.centre});
     add(place.pose.orientation.coeffs());
   }
+  add(std::vector<Mat3>{state.model.cell.edges, state.model.cell.rate, state.list.edges});
   add(std::vector<double>{state.time, state.list.wall_way});
   add(state.list.wall_lever);
   bits += std::to_string(assembly::count_bonds(state.model));

@@ -140,7 +140,7 @@ class SceneBuilder {
     return *this;
   }
   SceneBuilder& periodic(const Vec3& lengths, std::array<bool, 3> axes = {true, true, true}) {
-    scene_.cell = {Vec3::Zero(), lengths, axes};
+    scene_.cell = model::PeriodicCell::box(Vec3::Zero(), lengths, axes);
     return *this;
   }
   /// The same scene turned about the origin. Only without fixed components and periodic axes.

@@ -205,7 +205,7 @@ periodic: {box: [2, 4, 0], origin: [-1, 0, 0], axes: [x, y]}
 )",
                                              ".");
   EXPECT_EQ(scene.cell.periodic, (std::array{true, true, false}));
-  EXPECT_EQ(scene.cell.lengths, Vec3(2, 4, 0));
+  EXPECT_EQ(scene.cell.edges, Mat3(Vec3(2, 4, 0).asDiagonal()));
   EXPECT_EQ(scene.cell.origin, Vec3(-1, 0, 0));
   EXPECT_EQ(scene.bodies.position[0], Vec3(0.5, 3, 7));
 }

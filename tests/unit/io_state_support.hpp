@@ -95,6 +95,7 @@ inline assembly::State arbitrary_state(const model::Scene& scene, bool turns = t
       if constexpr (requires { contact.shear; }) contact.shear = {1.0 / 3, -0.0, 1e-310};
   });
   state.list.skin = 0.1 + 0.2;
+  state.list.edges = state.model.cell.edges;
   state.list.rebuilds = 12;
   state.time = 1.0 / 3;
   state.step = (std::int64_t{1} << 60) + 1;
@@ -130,8 +131,9 @@ inline std::vector<std::string> bits(const assembly::State& state) {
   for (const double value : {state.time, state.dt, state.next_dt, state.model.local_damping})
     all.push_back(bytes_of(value));
   for (const std::int64_t value : {state.step, state.list.rebuilds}) all.push_back(std::to_string(value));
-  all.push_back(
-      bytes_of(std::vector{state.model.gravity, state.model.cell.origin, state.model.cell.lengths}));
+  all.push_back(bytes_of(std::vector{state.model.gravity, state.model.cell.origin}));
+  const model::PeriodicCell& cell = state.model.cell;
+  all.push_back(bytes_of(std::vector{cell.edges, cell.rate, cell.velocity_gradient, state.list.edges}));
   for (const bool axis : state.model.cell.periodic) all.emplace_back(axis ? "periodic" : "open");
   for (const model::Plane& wall : state.model.walls)
     all.push_back(wall.name + bytes_of(std::vector{wall.point, wall.normal}) + std::to_string(wall.material));

@@ -160,14 +160,14 @@ SceneBuilder strained(const Lattice& lattice, const Vec3& strain) {
   SceneBuilder builder = make_lattice(lattice, {.kn = 1, .tension = false}, {3, 3, 3});
   const Vec3 stretch = Vec3::Ones() + strain;
   for (Vec3& x : builder.scene().bodies.position) x = x.cwiseProduct(stretch);
-  builder.scene().cell.lengths = builder.scene().cell.lengths.cwiseProduct(stretch);
+  builder.scene().cell.edges = builder.scene().cell.edges * stretch.asDiagonal();
   return builder;
 }
 
 /// Regions that must all show the same in a lattice: all of it, and cells of it wherever they begin.
 std::vector<Region> cells_of(const model::Scene& scene) {
   std::vector<Region> regions{{"all", {}}};
-  const Vec3 cell = scene.cell.lengths / 3;
+  const Vec3 cell = scene.cell.lengths() / 3;
   std::mt19937_64 random(3);
   for (int k = 0; k < 5; ++k) {
     const Vec3 corner = uniform_point(random, -20, 20);

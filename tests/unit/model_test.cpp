@@ -29,12 +29,12 @@ TEST(Sphere, MassAndInertia) {
 }
 
 TEST(PeriodicCell, WrapsOnlyAlongItsAxesAndIntoTheHalfOpenCell) {
-  const PeriodicCell cell{.origin = {1, 0, 0}, .lengths = {2, 1, 1}, .periodic = {true, false, true}};
+  const PeriodicCell cell = PeriodicCell::box({1, 0, 0}, {2, 1, 1}, {true, false, true});
   EXPECT_EQ(cell.wrapped({3, 7, -0.25}), Vec3(1, 7, 0.75));
   EXPECT_EQ(cell.wrapped({0.5, 0, 1}), Vec3(2.5, 0, 0));
   // The largest double below zero: adding the length rounds to the upper end, which is the lower end.
   EXPECT_LT(cell.wrapped({1, 0, -1e-300}).z(), 1.0);
-  EXPECT_EQ(cell.shift({-1, 0, 2}), Vec3(-2, 0, 2));
+  EXPECT_EQ(cell.shift(Image{-1, 0, 2}), Vec3(-2, 0, 2));
 }
 
 TEST(SortAlongCurve, IsAPermutationThatShortensTheWay) {

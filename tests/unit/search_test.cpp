@@ -51,7 +51,7 @@ auto key(const CandidatePair& p) {
 /// and one more on either side.
 std::pair<int, int> image_range(const PeriodicCell& cell, int axis, double branch, double limit) {
   if (!cell.periodic[static_cast<std::size_t>(axis)]) return {0, 0};
-  const double length = cell.lengths[axis];
+  const double length = cell.edges(axis, axis);
   return {static_cast<int>(std::floor((-limit - branch) / length)) - 1,
           static_cast<int>(std::ceil((limit - branch) / length)) + 1};
 }
@@ -127,7 +127,7 @@ Balls packed(int n, double ratio, double solid_fraction, std::uint64_t seed) {
 }
 
 PeriodicCell cell_along(bool x, bool y, bool z, const Vec3& lengths, const Vec3& origin = Vec3::Zero()) {
-  return {.origin = origin, .lengths = lengths, .periodic = {x, y, z}};
+  return PeriodicCell::box(origin, lengths, {x, y, z});
 }
 
 TEST(CandidatePairs, NoneForNoBallAndForOne) {
@@ -258,7 +258,7 @@ TEST(CandidatePairs, InALargePeriodicCellThatIsNearlyEmpty) {
 TEST(CandidatePairs, LengthsOfAxesThatDoNotRepeatMeanNothing) {
   const Balls balls = packed(200, 2, 0.5, 13);
   PeriodicCell cell;
-  cell.lengths = Vec3(std::nan(""), -1, INFINITY);
+  cell.edges.diagonal() = Vec3(std::nan(""), -1, INFINITY);
   cell.origin = Vec3::Constant(std::nan(""));
   EXPECT_EQ(search(balls, cell), search(balls));
 }

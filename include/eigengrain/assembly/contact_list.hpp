@@ -33,7 +33,8 @@ enum class NewContacts {
 
 /// Replaces the contacts of the model by all pairs whose surfaces are no more than `reach` apart (m); with
 /// reach 0 by the pairs that touch. A contact that was there keeps its history, and one that still acts stays
-/// even beyond the reach. In a periodic cell, centres are wrapped into the cell first.
+/// even beyond the reach. In a periodic cell, centres are wrapped into the cell first; where that has been
+/// sheared far, its edges are replaced by shorter ones of the same lattice before (model::reduce).
 ///
 /// In each group contacts are sorted by a, then b, then image. Throws InputError where two centres coincide
 /// or no rule of the scene exists for a pair.

@@ -4,7 +4,8 @@
 
 namespace eigengrain::assembly {
 
-/// Mechanical energy of a state, J. The cycle has velocities at t - dt/2 and t + dt/2 but positions at t.
+/// Mechanical energy of a state, J. The cycle has velocities at t - dt/2 and t + dt/2 but positions at t. In
+/// a cell that deforms v is what bodies move by beyond its flow.
 struct Energies {
   double kinetic = 0;        ///< at t - dt/2: ½ v₋·M v₋, never negative
   double elastic = 0;        ///< stored in contacts at t

@@ -31,10 +31,18 @@ struct Trial {
   std::span<const Quat> orientation{};  ///< [bodies] turned by θ; or empty where nothing asks for it
   double per_second = 0;  ///< 1/Δt of a step in time; 0: nothing moves in time, and dashpots do nothing
   const WallStep* walls = nullptr;  ///< how walls moved; null: all stand still
+  /// By how much the edges of the periodic cell changed, m: images move apart with it; null: the cell rests.
+  const Mat3* cell_step = nullptr;
 
   contact::SideMotion side(std::int32_t body) const {
     const auto i = static_cast<std::size_t>(body);
     return {duration * velocity[i], spin.empty() ? Vec3(Vec3::Zero()) : Vec3(duration * spin[i])};
+  }
+  /// Of the image of a body, which moves with the cell as well.
+  contact::SideMotion side(std::int32_t body, const model::Image& image) const {
+    contact::SideMotion motion = side(body);
+    if (cell_step != nullptr) motion.translation += *cell_step * Vec3(image[0], image[1], image[2]);
+    return motion;
   }
 };
 
@@ -54,7 +62,7 @@ contact::MotionOf<Law> motion_in(const Law& law, const contact::Placement& place
                                  const contact::Pair& pair, const contact::ContactGeometry& geometry) {
   contact::SideMotion second;
   if constexpr (Kinematics::second_is_body)
-    second = trial.side(pair.b);
+    second = trial.side(pair.b, pair.image);
   else if (trial.walls != nullptr)
     second = trial.walls->side[static_cast<std::size_t>(Kinematics::wall(placement, pair))];
   contact::MotionOf<Law> motion =

@@ -13,11 +13,13 @@
 namespace eigengrain::assembly {
 
 /// Which pairs the contacts were listed for: all that were no more than `skin` apart when the bodies were at
-/// `position`. The list holds until some body, or some wall, has moved by half the skin; what a
-/// radius changes counts as a way.
+/// `position`. The list holds until some body, or some wall, has moved by half the skin; what a radius changes
+/// counts as a way. In a cell that deforms, until some body has moved so far beyond what the cell took it along
+/// by that, with the strain since, a pair might touch that is not listed.
 struct NeighbourList {
   double skin = 0;             ///< m
   std::vector<Vec3> position;  ///< [bodies] where they were when the list was made, m
+  Mat3 edges = Mat3::Zero();   ///< of the periodic cell then, m
   std::int64_t rebuilds = 0;   ///< lists made since the start
   double wall_way = 0;         ///< how far any wall may have moved since, at the bodies, m
   /// [wall_motions] the greatest distance of a body from the wall's centre while the list holds, m

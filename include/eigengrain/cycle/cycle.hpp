@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/state.hpp"
 
@@ -37,6 +38,8 @@ assembly::State start(const model::Scene& scene);
 ///   walls               by the velocity that is given for the middle of the step, servo walls by their load
 ///                       at t
 ///   radii               those of t + Δt, where some are ramped; masses follow
+///   periodic cell       where it has a velocity gradient (assembly/cell_motion.hpp): H₊ = exp(L Δt) H, and
+///                       bodies take part in its flow
 ///   contacts            the list, where a body or wall has moved by half the skin; forces from the new
 ///                       positions, the increments v₊ Δt and the old history, which is committed at once
 ///
@@ -62,10 +65,12 @@ class Cycle {
 
  private:
   /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
-  /// made, m². By what the bodies have of their own, and whether a ledger is kept.
-  double move(double duration, double dt);
-  template <class Work, class Properties>
-  double move(double duration, double dt);
+  /// made, in a cell that moves from where that took them, m². By what the bodies have of their own, whether a
+  /// ledger is kept, and whether the cell moves.
+  template <class Frame>
+  double move(double duration, double dt, const Frame& frame);
+  template <class Work, class Properties, class Frame>
+  double move(double duration, double dt, const Frame& frame);
   void list_anew();
   void choose_timestep();
 

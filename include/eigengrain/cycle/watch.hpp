@@ -18,12 +18,13 @@ struct Trouble {
 /// Looks at a state now and then for the signs of a blow-up, early enough for an earlier state to be good:
 ///   - a position, velocity or force that is not finite;
 ///   - an overlap of more than half of the smaller radius (of the radius, at a wall);
-///   - a ball that moves by more than a tenth of its radius in a step: it may pass others unseen;
+///   - a ball that moves by more than a tenth of its radius in a step, where a periodic cell deforms beside
+///     its flow and with what that takes neighbours past each other: it may pass others unseen;
 ///   - energy out of nothing: kinetic and elastic energy beyond a hundred times what there was and the
 ///     most that gravity has released since. Below the limit of the undamped cycle a mode stays within 22.4
 ///     times its amplitude at 0.999 of the limit (500 times its energy); at ordinary steps within a few
-///     times. Not where energy comes in unseen: gravity along a periodic axis, applied loads, radii
-///     that change, masses that are scaled, bodies and walls that are moved with a given velocity.
+///     times. Not where energy comes in unseen: gravity along a periodic axis, a cell that deforms, applied
+///     loads, radii that change, masses that are scaled, bodies and walls that are moved with a given velocity.
 class Watch {
  public:
   explicit Watch(const assembly::State& state);

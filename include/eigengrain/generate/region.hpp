@@ -19,7 +19,7 @@ struct Region {
   Vec3 edges() const { return upper - lower; }
   double volume() const { return edges().prod(); }
   /// The cell that repeats as the region does.
-  model::PeriodicCell cell() const { return {.origin = lower, .lengths = edges(), .periodic = periodic}; }
+  model::PeriodicCell cell() const { return model::PeriodicCell::box(lower, edges(), periodic); }
 };
 
 /// Σ 4/3 π r³ over the volume of the region; what balls share where they overlap counts for each of them.

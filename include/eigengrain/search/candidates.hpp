@@ -19,11 +19,12 @@ struct CandidatePair {
   friend bool operator==(const CandidatePair&, const CandidatePair&) = default;
 };
 
-/// All pairs whose surfaces are no more than `reach` apart: |x_b + shift - x_a| <= r_a + r_b + reach.
+/// All pairs whose surfaces are no more than `reach` apart: |x_b + shift - x_a| <= r_a + r_b + reach. Edges
+/// of the cell need not stand at right angles; the cost grows as they slant (reduce() keeps them from it).
 ///
 /// centres  [n] positions, m (need not lie in the cell)
 /// radii    [n] m, positive
-/// cell     which axes repeat, and with which length; a cell smaller than the spheres is fine
+/// cell     which axes repeat, and with which edges; a cell smaller than the spheres is fine
 ///
 /// Sorted by a, then b, then image. Cost O(n + pairs) for any spread of sizes and any gaps between bodies;
 /// independent of the number of threads to the bit.
