@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,6 +20,7 @@ using contact::BallBall;
 using contact::BondLaw;
 using contact::ContactGroup;
 using contact::Pair;
+using contact::precedes;
 
 /// What `from_values` of a bond wants: a bond that is the law itself has the law's values in front.
 template <BondLaw Bond>
@@ -43,10 +43,6 @@ struct NewBond {
   Pair pair;
   contact::BondSite site;
 };
-
-bool precedes(const Pair& left, const Pair& right) {
-  return std::tie(left.a, left.b, left.image) < std::tie(right.a, right.b, right.image);
-}
 
 /// [rules] the pairs to be bonded.
 std::vector<std::vector<NewBond>> pairs_to_bond(const Model& model, const model::Scene& scene, double reach) {

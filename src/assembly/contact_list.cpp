@@ -16,7 +16,6 @@
 #include <limits>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -26,6 +25,7 @@ namespace {
 using contact::AnyGroup;
 using contact::ContactGroup;
 using contact::Pair;
+using contact::precedes;
 using model::LatticeChange;
 
 /// Whether the bonds of a rule are in the group of its law (a contact bond), not beside it.
@@ -69,10 +69,6 @@ class RuleTable {
   std::size_t materials_;
   std::vector<std::int32_t> rules_;
 };
-
-bool precedes(const Pair& left, const Pair& right) {
-  return std::tie(left.a, left.b, left.image) < std::tie(right.a, right.b, right.image);
-}
 
 /// A contact that acts by an entry that was chosen for it (assembly/choose_contacts.hpp).
 struct ChosenContact {
@@ -381,8 +377,7 @@ typename Law::State mirrored(const typename Law::State& state) {
 template <class Group>
 void look_ahead(Group& group) {
   using Law = typename Group::LawType;
-  if constexpr (contact::BondLaw<Law>)
-    if (Law::additive) return;
+  if constexpr (contact::is_beside_law<Law>) return;
   for (std::size_t c = 0; c < group.pairs.size(); ++c) {
     Pair& pair = group.pairs[c];
     if (pair.a != pair.b || pair.image > model::Image{}) continue;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -35,25 +34,13 @@ bool slides(const Law& law, const contact::ContactMotion& motion, const State& s
   return raised - shear < 0.5 * probe * shear;
 }
 
-/// Bonds that add to another law on the same pair.
-template <class Law>
-constexpr bool beside_law() {
-  if constexpr (contact::BondLaw<Law>)
-    return Law::additive;
-  else
-    return false;
-}
-template <class Law>
-inline constexpr bool is_beside_law = beside_law<Law>();
-
 /// Where a pair of bodies is among the contacts.
 struct Place {
   contact::Pair pair;
   std::size_t index;
 };
 bool precedes(const Place& left, const Place& right) {
-  return std::tie(left.pair.a, left.pair.b, left.pair.image) <
-         std::tie(right.pair.a, right.pair.b, right.pair.image);
+  return contact::precedes(left.pair, right.pair);
 }
 
 }  // namespace
@@ -78,7 +65,7 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
           geometry.branch() + assembly::lever_of(bodies, pair.a) - assembly::lever_of(bodies, pair.b);
     else
       found.branch = geometry.lever_a + assembly::lever_of(bodies, pair.a);
-    if constexpr (is_beside_law<typename Group::LawType>) {
+    if constexpr (contact::is_beside_law<typename Group::LawType>) {
       found.carries_moments = true;
       beside.emplace_back(pair, found);
     } else {

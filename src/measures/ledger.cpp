@@ -69,11 +69,11 @@ double potential_of(const assembly::Model& model) {
   return sum;
 }
 
-/// Laws of contacts with a shear spring, glued or not; the bonds beside them are told apart by `additive`.
+/// Laws of contacts with a shear spring, glued or not.
 template <class Law>
 constexpr bool shear_spring_of() {
   if constexpr (contact::BondLaw<Law>)
-    return !Law::additive;
+    return !contact::is_beside_law<Law>;
   else
     return requires(const typename Law::State& state) {
       state.shear;

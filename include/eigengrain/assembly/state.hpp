@@ -13,9 +13,9 @@
 namespace eigengrain::assembly {
 
 /// Which pairs the contacts were listed for: all that were no more than `skin` apart when the bodies were at
-/// `position`. The list holds until some body, or some wall, has moved by half the skin; what a radius changes
-/// counts as a way. In a cell that deforms, until some body has moved so far beyond what the cell took it along
-/// by that, with the strain since, a pair might touch that is not listed.
+/// `position`. The list holds until some body, or some wall, has moved by half the skin; what a radius
+/// changes counts as a way. In a cell that deforms, until some body has moved so far beyond what the cell
+/// took it along by that, with the strain since, a pair might touch that is not listed.
 struct NeighbourList {
   double skin = 0;             ///< m
   std::vector<Vec3> position;  ///< [bodies] where they were when the list was made, m

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <tuple>
 
 /// How the motion of two sides becomes the motion of their contact: the B of K = BᵀDB.
 namespace eigengrain::contact {
@@ -29,6 +30,11 @@ struct Pair {
 
   bool is_contact() const { return side == 1 || side == -1; }
 };
+
+/// The order of pairs in lists and groups: by a, then b, then image.
+inline bool precedes(const Pair& left, const Pair& right) {
+  return std::tie(left.a, left.b, left.image) < std::tie(right.a, right.b, right.image);
+}
 
 /// Where a surface is.
 struct SurfacePlace {

@@ -24,7 +24,8 @@ struct Trouble {
 ///     most that gravity has released since. Below the limit of the undamped cycle a mode stays within 22.4
 ///     times its amplitude at 0.999 of the limit (500 times its energy); at ordinary steps within a few
 ///     times. Not where energy comes in unseen: gravity along a periodic axis, a cell that deforms, applied
-///     loads, radii that change, masses that are scaled, bodies and walls that are moved with a given velocity.
+///     loads, radii that change, masses that are scaled, bodies and walls that are moved with a given
+///     velocity.
 class Watch {
  public:
   explicit Watch(const assembly::State& state);

@@ -38,4 +38,10 @@ concept BondLaw = ContactLaw<L> &&
   { law.unbreakable() } -> std::same_as<L>;
 };
 
+/// Whether contacts of a law are bonds that stand beside those of another law, between the same bodies.
+template <class Law>
+inline constexpr bool is_beside_law = false;
+template <BondLaw Law>
+inline constexpr bool is_beside_law<Law> = Law::additive;
+
 }  // namespace eigengrain::contact
