@@ -203,6 +203,15 @@ TEST(MassScaling, ABedOfTwoSizesSettlesInFewerSteps) {
               static_cast<long long>(truly.steps), static_cast<long long>(quickly.steps));
   ASSERT_LT(truly.steps, most);
   EXPECT_LT(4 * quickly.steps, truly.steps);
+  // Both are the same solution: what the floor bears errs by no more than what all bodies together are out of
+  // balance by.
+  double weight = 0;
+  for (const double m : scene.bodies.mass) weight += 10 * m;
+  for (const Settled* end : {&truly, &quickly}) {
+    const assembly::Balance balance = assembly::balance_of(end->state);
+    EXPECT_NEAR(assembly::wall_loads(end->state.model)[0].force.z(), -weight,
+                40 * balance.mean * balance.mean_contact_force);
+  }
 }
 
 TEST(MassScaling, ABallWithoutContactsHasTheFactorOfItsFirstOne) {
