@@ -5,43 +5,17 @@
 #include "eigengrain/contact/orientation.hpp"
 #include "eigengrain/cycle/free_rotation.hpp"
 
-#include "kick.hpp"
 #include "own_properties.hpp"
+
+#include <cstdint>
+#include <vector>
 
 namespace eigengrain::cycle {
 namespace {
 
-/// Force on a clump and moment about its centre, of the contacts.
-struct Resultant {
-  Vec3 force = Vec3::Zero();
-  Vec3 moment = Vec3::Zero();
-};
-
-Resultant resultant(const assembly::State& state, std::int32_t clump) {
-  Resultant sum;
-  for (const std::int32_t row : state.model.bodies.clumps.members(clump)) {
-    const auto i = static_cast<std::size_t>(row);
-    sum.force += state.force[i];
-    sum.moment += state.moment[i] + assembly::lever_of(state.model.bodies, row).cross(state.force[i]);
-  }
-  return sum;
-}
-
-/// The moment with its local damping, which acts along the principal axes; where all axes are principal,
-/// along those of space, as that of a ball does.
-Vec3 damped_moment(const Vec3& moment, const Quat& axes, const Vec3& inertia, const Vec3& momentum,
-                   double damping) {
-  if (damping == 0) return moment;  // the detour through the axes would cost digits
-  const bool round = inertia[0] == inertia[1] && inertia[1] == inertia[2];
-  const Quat orientation = round ? Quat(Quat::Identity()) : axes;
-  Vec3 own = orientation.conjugate() * moment;
-  const Vec3 turning = orientation.conjugate() * momentum;
-  for (int k = 0; k < 3; ++k) own[k] += assembly::local_damping_force(own[k], turning[k], damping);
-  return orientation * own;
-}
-
-template <class Frame>
-void move_clump(assembly::State& state, std::int32_t clump, double duration, double dt, const Frame& frame) {
+template <class Work, class Frame>
+void move_clump(assembly::State& state, std::int32_t clump, double duration, double dt, const Frame& frame,
+                Work& work) {
   model::Bodies& bodies = state.model.bodies;
   model::Clumps& clumps = bodies.clumps;
   const auto c = static_cast<std::size_t>(clump);
@@ -49,16 +23,18 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
   const EachItsOwn own(state.model);
   const double damping = own.damping(holder);
   const model::FixedComponents fixed = bodies.fixed[holder];
-  const Resultant contacts = resultant(state, clump);
+  const assembly::Resultant contacts = assembly::resultant_on(bodies, clump, state.force, state.moment);
 
   Vec3& velocity = clumps.velocity[c];
-  NoWork none(0, 0);  // scenes with clumps have no ledger
   kick(velocity, contacts.force + own.load(holder), own.mass(holder), duration, damping, fixed.translation(),
-       none, FlowAt<Frame>(frame, clumps.position[c]));
+       work, FlowAt<Frame>(frame, clumps.position[c]));
+  work.gravity(clumps.mass[c] * state.model.gravity, velocity);
   clumps.position[c] += dt * velocity;
 
+  const Vec3 moment = own.with_applied(holder, contacts.moment);
   FreeRotation rotation;
   if (fixed.rotation() == 7) {
+    for (int k = 0; k < 3; ++k) work.held(moment[k], clumps.spin[c][k]);
     rotation.theta = dt * clumps.spin[c];
     rotation.orientation = contact::turned(clumps.orientation[c], rotation.theta);
     rotation.turn = contact::turned(Quat::Identity(), rotation.theta);
@@ -66,11 +42,16 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
     Vec3& momentum = clumps.angular_momentum[c];
     // Of the true mass, also where masses are scaled: then moments are divided by the factor.
     const double scaled = bodies.mass_factor.empty() ? duration : duration / bodies.mass_factor[holder];
-    momentum += scaled * damped_moment(own.with_applied(holder, contacts.moment), clumps.orientation[c],
-                                       clumps.inertia[c], momentum, damping);
+    const Vec3 resistance =
+        assembly::local_damping_moment(moment, clumps.orientation[c], clumps.inertia[c], momentum, damping);
+    momentum += scaled * (moment + resistance);
     rotation = rotate_freely(clumps.orientation[c], momentum, clumps.inertia[c], dt);
+    const Vec3 before = clumps.spin[c];
     clumps.spin[c] = rotation.theta / dt;
+    work.resisted(resistance, before, clumps.spin[c]);
   }
+  if (!bodies.applied_force.empty()) work.applied(bodies.applied_force[holder], velocity);
+  if (!bodies.applied_moment.empty()) work.applied(bodies.applied_moment[holder], clumps.spin[c]);
   for (auto m = static_cast<std::size_t>(clumps.starts[c]);
        m < static_cast<std::size_t>(clumps.starts[c + 1]); ++m) {
     const auto i = static_cast<std::size_t>(clumps.member[m]);
@@ -86,17 +67,23 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
 
 }  // namespace
 
-template <class Frame>
+template <class Work, class Frame>
 void move_clumps(assembly::State& state, double duration, double dt, const Frame& frame) {
   constexpr std::int64_t chunk_size = 256;
-  for_chunks(state.model.bodies.clumps.size(), chunk_size,
-             [&](std::int64_t begin, std::int64_t end, std::int64_t) {
-               for (auto clump = static_cast<std::int32_t>(begin); clump < end; ++clump)
-                 move_clump(state, clump, duration, dt, frame);
-             });
+  const std::int64_t clumps = state.model.bodies.clumps.size();
+  std::vector<assembly::EnergyIntegrals> works(
+      Work::counts ? static_cast<std::size_t>((clumps + chunk_size - 1) / chunk_size) : 0);
+  for_chunks(clumps, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+    Work work(state.dt, dt);
+    for (auto clump = static_cast<std::int32_t>(begin); clump < end; ++clump)
+      move_clump(state, clump, duration, dt, frame, work);
+    if constexpr (Work::counts) works[static_cast<std::size_t>(chunk)] = work.sum;
+  });
+  for (const assembly::EnergyIntegrals& work : works) state.ledger->integrals += work;
 }
 
-template void move_clumps(assembly::State&, double, double, const assembly::CellAtRest&);
-template void move_clumps(assembly::State&, double, double, const assembly::MovingCell&);
+template void move_clumps<NoWork>(assembly::State&, double, double, const assembly::CellAtRest&);
+template void move_clumps<NoWork>(assembly::State&, double, double, const assembly::MovingCell&);
+template void move_clumps<KickWork>(assembly::State&, double, double, const assembly::CellAtRest&);
 
 }  // namespace eigengrain::cycle

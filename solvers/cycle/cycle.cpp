@@ -91,7 +91,7 @@ double Cycle::move(double duration, double dt, const Frame& frame) {
   model::Bodies& bodies = state_.model.bodies;
   const Properties own(state_.model);
   const bool clumps = !bodies.clumps.empty();
-  if (clumps) move_clumps(state_, duration, dt, frame);
+  if (clumps) move_clumps<Work>(state_, duration, dt, frame);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
   std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);

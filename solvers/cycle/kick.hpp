@@ -17,6 +17,7 @@ struct NoWork {
   void held(double /*force*/, double /*velocity*/) {}
   void gravity(const Vec3& /*weight*/, const Vec3& /*velocity*/) {}
   void applied(const Vec3& /*load*/, const Vec3& /*velocity*/) {}
+  void resisted(const Vec3& /*moment*/, const Vec3& /*before*/, const Vec3& /*after*/) {}
 };
 
 /// The work that a kick decides: half of it over the step behind and half over the step ahead, the way of
@@ -31,6 +32,10 @@ struct KickWork {
   void gravity(const Vec3& weight, const Vec3& velocity) { sum.gravity += ahead * weight.dot(velocity); }
   /// Of a constant force with a velocity, or a moment with a spin.
   void applied(const Vec3& load, const Vec3& velocity) { sum.applied += ahead * load.dot(velocity); }
+  /// Of a damping moment that does not act axis by axis, with the spins of the steps behind and ahead.
+  void resisted(const Vec3& moment, const Vec3& before, const Vec3& after) {
+    sum.damping -= 0.5 * moment.dot(behind * before + ahead * after);
+  }
 
   double behind;  ///< s
   double ahead;   ///< s

@@ -4,6 +4,17 @@
 
 namespace eigengrain::assembly {
 
+Resultant resultant_on(const model::Bodies& bodies, std::int32_t clump, std::span<const Vec3> force,
+                       std::span<const Vec3> moment) {
+  Resultant sum;
+  for (const std::int32_t row : bodies.clumps.members(clump)) {
+    const auto i = static_cast<std::size_t>(row);
+    sum.force += force[i];
+    sum.moment += moment[i] + lever_of(bodies, row).cross(force[i]);
+  }
+  return sum;
+}
+
 void carry_members(const model::Bodies& bodies, Displacement& moved) {
   const model::Clumps& clumps = bodies.clumps;
   if (clumps.empty()) return;

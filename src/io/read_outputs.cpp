@@ -91,11 +91,6 @@ bool read_columns(const Section& section, const SceneDraft& draft, model::Histor
   const bool of_walls = history.walls || history.wall_moments || history.wall_positions;
   if (of_walls && draft.scene.walls.empty() && draft.scene.surfaces.empty() && draft.walls_complete)
     section.report("of", "walls, and the scene has none; remove the word, or add walls");
-  if (history.ledger && !draft.scene.bodies.clumps.empty())
-    section.report(
-        "of",
-        "ledger, which does not count the work on clumps; take `energies`, which has their kinetic "
-        "energy");
   check_balls(section, *balls, draft);
   return true;
 }

@@ -1,5 +1,6 @@
 #include "eigengrain/measures/ledger.hpp"
 
+#include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/loads.hpp"
 #include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/base/assert.hpp"
@@ -26,6 +27,7 @@ struct Motion {
     half += other.half;
     return *this;
   }
+  /// A body's velocity, or its spin if it is a ball.
   void add(const Vec3& velocity, const Vec3& force, double inertia, double dt, double alpha,
            std::uint8_t fixed) {
     for (int k = 0; k < 3; ++k) {
@@ -42,12 +44,42 @@ struct Motion {
   }
 };
 
+/// A clump, with its tensor of inertia as it lies at t.
+void add_clump(const State& state, std::int32_t clump, Motion& motion) {
+  const model::Bodies& bodies = state.model.bodies;
+  const model::Clumps& clumps = bodies.clumps;
+  const auto c = static_cast<std::size_t>(clump);
+  const auto holder = static_cast<std::size_t>(clumps.holder(clump));
+  const double alpha = assembly::damping_of(state.model, holder);
+  const model::FixedComponents fixed = bodies.fixed[holder];
+  const assembly::Resultant contacts = assembly::resultant_on(bodies, clump, state.force, state.moment);
+  motion.add(clumps.velocity[c], contacts.force + assembly::load_on(state.model, holder), clumps.mass[c],
+             state.dt, alpha, fixed.translation());
+  const Vec3 moment = contacts.moment + assembly::moment_on(state.model, holder);
+  const Vec3& momentum = clumps.angular_momentum[c];
+  const Vec3 w = model::angular_velocity(clumps, clump);
+  if (fixed.rotation() != 0) {
+    motion.kinetic += 0.5 * w.dot(momentum);
+    motion.half.prescribed -= 0.5 * state.dt * moment.dot(clumps.spin[c]);
+    return;
+  }
+  const Vec3 resistance =
+      assembly::local_damping_moment(moment, clumps.orientation[c], clumps.inertia[c], momentum, alpha);
+  motion.kinetic += 0.5 * w.dot(momentum + state.dt * (moment + resistance));
+  motion.half.damping -= 0.5 * state.dt * resistance.dot(clumps.spin[c]);
+}
+
 Motion motion_of(const State& state) {
   const model::Bodies& bodies = state.model.bodies;
   std::vector<Motion> parts(static_cast<std::size_t>((bodies.size() + chunk_size - 1) / chunk_size));
   for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     Motion& part = parts[chunk];
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      if (const std::int32_t clump = bodies.clumps.of(static_cast<std::int32_t>(i));
+          clump != model::Clumps::none) {
+        if (bodies.clumps.holder(clump) == static_cast<std::int32_t>(i)) add_clump(state, clump, part);
+        continue;
+      }
       const model::FixedComponents fixed = bodies.fixed[i];
       const double alpha = assembly::damping_of(state.model, i);
       const Vec3 force = state.force[i] + assembly::load_on(state.model, i);
@@ -65,7 +97,11 @@ Motion motion_of(const State& state) {
 double potential_of(const assembly::Model& model) {
   double sum = 0;
   for (std::size_t i = 0; i < model.bodies.position.size(); ++i)
-    sum -= model.bodies.mass[i] * model.gravity.dot(model.bodies.position[i]);
+    if (model.bodies.clumps.of(static_cast<std::int32_t>(i)) == model::Clumps::none)
+      sum -= model.bodies.mass[i] * model.gravity.dot(model.bodies.position[i]);
+  const model::Clumps& clumps = model.bodies.clumps;
+  for (std::size_t c = 0; c < clumps.position.size(); ++c)
+    sum -= clumps.mass[c] * model.gravity.dot(clumps.position[c]);
   return sum;
 }
 
@@ -155,10 +191,6 @@ std::vector<LedgerEntry> entries_of(const Ledger& ledger) {
 }
 
 void begin_ledger(State& state) {
-  if (!state.model.bodies.clumps.empty())
-    throw InputError(
-        "histories: the ledger does not count the work on clumps; leave `ledger` out of what the table holds "
-        "(`energies` has their kinetic energy)");
   if (state.settings.mass_scaling)
     throw InputError(
         "histories: a ledger has no meaning where masses are scaled; leave `ledger` out of what the table "

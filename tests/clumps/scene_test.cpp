@@ -154,13 +154,6 @@ TEST(ClumpMistakes, OfAPlane) {
               Contains(HasSubstr("clumps: not in a planar scene")));
 }
 
-TEST(ClumpMistakes, OfALedger) {
-  const std::string at = ", instances: [{position: [0, 0, 0]}]";
-  EXPECT_THAT(
-      texts_of(mistakes_in(scene(entry(pair + at), "histories: [{file: e.csv, every: 1, of: [ledger]}]\n"))),
-      ElementsAre(HasSubstr("histories[0].of: ledger, which does not count the work on clumps")));
-}
-
 TEST(ClumpMistakes, OfPlacesAreFoundAsThoseOfBalls) {
   const std::string at = ", instances: [{position: [0, 0, -1]}, {position: [0, 0, 2 mm]}]";
   const std::vector<std::string> behind = texts_of(mistakes_in(

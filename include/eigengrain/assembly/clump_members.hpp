@@ -4,6 +4,7 @@
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/contact/orientation.hpp"
 
+#include <cstdint>
 #include <span>
 
 /// Between the balls of a clump, which have the contacts, and its holder, which has the unknowns: kinematics
@@ -25,6 +26,18 @@ inline Vec3 lever_of(const model::Bodies& bodies, std::int32_t row, std::span<co
   if (rotation.empty() || lever.isZero(0)) return lever;
   return contact::turned(Quat::Identity(), duration * rotation[static_cast<std::size_t>(row)]) * lever;
 }
+
+/// Force on a clump (N) and moment about its centre (N m), along the axes of space.
+struct Resultant {
+  Vec3 force = Vec3::Zero();
+  Vec3 moment = Vec3::Zero();
+};
+
+/// Of the contacts of its balls, in the order of the scene.
+///
+/// force, moment  [bodies] on each ball, the moment about its own centre
+Resultant resultant_on(const model::Bodies& bodies, std::int32_t clump, std::span<const Vec3> force,
+                       std::span<const Vec3> moment);
 
 /// Gives all balls of clumps the displacement that follows from their holder's, exactly: the holder's u is
 /// that of the clump's centre, and its θ (in space) turns the clump. The holder's row becomes that of its own

@@ -16,6 +16,24 @@ inline double local_damping_force(double force, double velocity, double alpha) {
   return 0.0;
 }
 
+/// The same of a moment on a clump (N m, along the axes of space), which acts along the principal axes; where
+/// all axes are principal, along those of space, as that of a ball does.
+///
+/// axes      from the principal axes to space
+/// inertia   principal moments, kg m²
+/// momentum  angular momentum: the sign of its components is that of the damping, kg m²/s
+inline Vec3 local_damping_moment(const Vec3& moment, const Quat& axes, const Vec3& inertia,
+                                 const Vec3& momentum, double alpha) {
+  if (alpha == 0) return Vec3::Zero();
+  const bool round = inertia[0] == inertia[1] && inertia[1] == inertia[2];
+  const Quat orientation = round ? Quat(Quat::Identity()) : axes;
+  const Vec3 own = orientation.conjugate() * moment;
+  const Vec3 turning = orientation.conjugate() * momentum;
+  Vec3 resistance;
+  for (int k = 0; k < 3; ++k) resistance[k] = local_damping_force(own[k], turning[k], alpha);
+  return orientation * resistance;
+}
+
 /// α of a body: its own, or that of the scene.
 inline double damping_of(const Model& model, std::size_t row) {
   const std::vector<double>& own = model.bodies.damping;

@@ -54,7 +54,7 @@ struct LedgerEntry {
 std::vector<LedgerEntry> entries_of(const Ledger& ledger);
 
 /// Begins the ledger of a state, or begins it anew: from here on the cycle keeps it. Throws InputError where
-/// there are clumps, masses are scaled or the periodic cell deforms.
+/// masses are scaled or the periodic cell deforms.
 void begin_ledger(assembly::State& state);
 
 /// The ledger of a state, which must have begun one. Cost: about one sum of forces.
