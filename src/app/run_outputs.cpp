@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace eigengrain::app {
 namespace {
@@ -47,15 +48,18 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
 RunOutputs::RunOutputs(const Input& input)
     : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
   const std::int64_t step = input.state.step;
+  const auto& rules = input.state.settings.contacts;
+  const bool bonds =
+      std::any_of(rules.begin(), rules.end(), [](const auto& rule) { return rule.bond.has_value(); });
   if (choice_.series_every > 0) {
     series_.emplace_back(input.folder, input.stem, io::Series::Of::balls, choice_.series_stress);
     if (!input.state.model.surfaces.empty())
       series_.emplace_back(input.folder, input.stem + "_walls", io::Series::Of::surfaces);
+    if (bonds) series_.emplace_back(input.folder, input.stem + "_breaks", io::Series::Of::breaks);
     for (io::Series& series : series_)
       if (input.continued && std::filesystem::exists(series.list_file())) series.continue_from(step);
   }
-  const auto& rules = input.state.settings.contacts;
-  if (std::any_of(rules.begin(), rules.end(), [](const auto& rule) { return rule.bond.has_value(); }))
+  if (bonds)
     breaks_.emplace(input.folder, input.stem + "-breaks.csv",
                     input.continued ? std::optional(step) : std::nullopt);
   for (model::History history : input.state.settings.histories) {
@@ -78,7 +82,8 @@ std::int64_t RunOutputs::next(std::int64_t step) const {
 
 void RunOutputs::write_due(const State& state) {
   if (choice_.series_every > 0 && state.step % choice_.series_every == 0)
-    for (io::Series& series : series_) series.add(state);
+    for (io::Series& series : series_)
+      series.add(state, breaks_ ? breaks_->all() : std::span<const assembly::BondBreak>());
   for (io::HistoryFile& history : histories_)
     if (history.due(state.step)) history.add(state, values_for(history.history(), state));
 }

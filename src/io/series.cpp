@@ -83,17 +83,23 @@ std::string Series::list_text() const {
   return text + std::string(list_tail);
 }
 
-void Series::add(const assembly::State& state) {
+void Series::add(const assembly::State& state, std::span<const assembly::BondBreak> breaks) {
   const bool there = std::any_of(frames_.begin(), frames_.end(),
                                  [&](const Frame& frame) { return frame.step == state.step; });
   if (there) return;
   EIGENGRAIN_ASSERT(frames_.empty() || frames_.back().step < state.step, state.step);
   const std::filesystem::path file = frame_file(state.step);
   make_folder(file.parent_path());
-  if (what_ == Of::balls)
-    write_frame(file, state, stress_);
-  else
-    write_surface_frame(file, state.model);
+  switch (what_) {
+    case Of::balls:
+      write_frame(file, state, stress_);
+      break;
+    case Of::surfaces:
+      write_surface_frame(file, state.model);
+      break;
+    case Of::breaks:
+      write_break_frame(file, breaks);
+  }
   frames_.push_back({state.step, state.time});
   write_list();
 }

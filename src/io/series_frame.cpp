@@ -157,6 +157,14 @@ std::vector<T> numbered_from(T first, std::size_t count) {
   return numbers;
 }
 
+/// A cell for each of so many points: ParaView draws no points that belong to none.
+std::string vertices(std::size_t count, AppendedArrays& arrays) {
+  constexpr std::uint8_t vtk_vertex = 1;
+  return arrays.add("connectivity", count, [=] { return numbered_from<std::int64_t>(0, count); }) +
+         arrays.add("offsets", count, [=] { return numbered_from<std::int64_t>(1, count); }) +
+         arrays.add("types", count, [=] { return std::vector<std::uint8_t>(count, vtk_vertex); });
+}
+
 }  // namespace
 
 void write_frame(const std::filesystem::path& file, const assembly::State& state, bool stress) {
@@ -194,12 +202,7 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
   if (stress) xml += arrays.add("stress", count, [&] { return gathered(stresses(state.model), rows); });
   xml += "</PointData>\n<Points>\n";
   xml += column("Points", bodies.position);
-  xml += "</Points>\n<Cells>\n";
-  // A cell each: ParaView draws no points that belong to none.
-  constexpr std::uint8_t vtk_vertex = 1;
-  xml += arrays.add("connectivity", count, [=] { return numbered_from<std::int64_t>(0, count); });
-  xml += arrays.add("offsets", count, [=] { return numbered_from<std::int64_t>(1, count); });
-  xml += arrays.add("types", count, [=] { return std::vector<std::uint8_t>(count, vtk_vertex); });
+  xml += "</Points>\n<Cells>\n" + vertices(count, arrays);
   write_frame(file, xml, arrays);
 }
 
@@ -233,6 +236,30 @@ void write_surface_frame(const std::filesystem::path& file, const assembly::Mode
     return ends;
   });
   xml += arrays.add("types", cells, [=] { return std::vector<std::uint8_t>(cells, vtk_triangle); });
+  write_frame(file, xml, arrays);
+}
+
+void write_break_frame(const std::filesystem::path& file, std::span<const assembly::BondBreak> breaks) {
+  const std::size_t count = breaks.size();
+  AppendedArrays arrays;
+  const auto column = [&](std::string_view name, auto of) {
+    return arrays.add(name, count, [breaks, of] {
+      std::vector<std::invoke_result_t<decltype(of), const assembly::BondBreak&>> values;
+      for (const assembly::BondBreak& found : breaks) values.push_back(of(found));
+      return values;
+    });
+  };
+  std::string xml =
+      fmt::format("{0}<Piece NumberOfPoints=\"{1}\" NumberOfCells=\"{1}\">\n<PointData Scalars=\"time\">\n",
+                  frame_head, count);
+  xml += column("time", [](const auto& found) { return found.time; });
+  xml += column("step", [](const auto& found) { return found.step; });
+  xml += column("mode", [](const auto& found) { return static_cast<std::int32_t>(found.mode); });
+  xml += column("ball_a", [](const auto& found) { return found.first; });
+  xml += column("ball_b", [](const auto& found) { return found.second; });
+  xml += column("normal", [](const auto& found) { return found.normal; });
+  xml += "</PointData>\n<Points>\n" + column("Points", [](const auto& found) { return found.place; });
+  xml += "</Points>\n<Cells>\n" + vertices(count, arrays);
   write_frame(file, xml, arrays);
 }
 

@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/state.hpp"
 
 #include <filesystem>
+#include <span>
 
 namespace eigengrain::io {
 
@@ -15,5 +16,8 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
 
 /// The triangles of all surfaces where they are.
 void write_surface_frame(const std::filesystem::path& file, const assembly::Model& model);
+
+/// Bonds that broke: a point each, where its contact was.
+void write_break_frame(const std::filesystem::path& file, std::span<const assembly::BondBreak> breaks);
 
 }  // namespace eigengrain::io

@@ -76,7 +76,7 @@ class Runs(ProgramTest):
             self.assertEqual((self.folder / "whole" / file).read_text(), (self.folder / "parts" / file).read_text())
 
     def test_bonds_that_break_are_written_down(self):
-        scene = self.scene(CHAIN + "run: {steps: 500}\n")
+        scene = self.scene(CHAIN + "run: {steps: 500}\noutputs: {series: 100}\n")
         text, report = self.succeed("check", scene)
         self.assertEqual(report["bonds"], 2)
         self.assertIn("bonds       2 ball-ball, parallel by contacts[0] glass-glass", text)
@@ -91,8 +91,11 @@ class Runs(ProgramTest):
         self.succeed("run", scene, "--output", self.folder / "parts", "--set", "run.steps=3")
         _, parts = self.succeed("run", self.folder / "parts" / "column.h5", "--set", "run.steps=500")
         self.assertEqual(parts["energies"], whole["energies"])
-        self.assertEqual((self.folder / "parts" / "column-breaks.csv").read_text(),
-                         (self.folder / "whole" / "column-breaks.csv").read_text())
+        for file in ("column-breaks.csv", "column_breaks.pvd", "column_breaks_series/column_breaks_0000000500.vtu"):
+            self.assertEqual((self.folder / "parts" / file).read_bytes(), (self.folder / "whole" / file).read_bytes())
+        self.assertIn(b'NumberOfPoints="1"', (self.folder / "whole" / file).read_bytes())
+        start = self.folder / "whole" / "column_breaks_series" / "column_breaks_0000000000.vtu"
+        self.assertIn(b'NumberOfPoints="0"', start.read_bytes())
 
     def test_a_run_needs_an_end(self):
         self.assertIn("run.steps=10000", self.fail_with("run", self.scene(COLUMN), "--output", self.folder))

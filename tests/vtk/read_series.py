@@ -130,6 +130,19 @@ class Series(unittest.TestCase):
                 found = vtk_to_numpy(data.GetArray("stress")).reshape(-1, 3, 3)
                 numpy.testing.assert_allclose(found, stress, rtol=0, atol=1e-12 * numpy.abs(stress).max())
 
+    def test_bonds_that_broke_are_points(self):
+        (_, before), (_, after) = self.listed("cracks")
+        self.assertEqual(self.frame(before).GetNumberOfPoints(), 0)
+        grid = self.frame(after)
+        self.assertEqual((grid.GetNumberOfPoints(), grid.GetNumberOfCells()), (2, 2))
+        self.assertTrue(same_bits(vtk_to_numpy(grid.GetPoints().GetData()), [[1, 2, 3], [-0.1, 0, 1e-30]]))
+        wanted = {"time": [0.25, 1 / 3], "step": [3, 5], "mode": [0, 1], "ball_a": [7, 12345678901], "ball_b": [1, 2],
+                  "normal": [[0, 0, 1], [0.6, -0.8, 0]]}
+        data = grid.GetPointData()
+        self.assertEqual({data.GetArrayName(k) for k in range(data.GetNumberOfArrays())}, set(wanted))
+        for name, values in wanted.items():
+            self.assertTrue(same_bits(vtk_to_numpy(data.GetArray(name)), values), name)
+
 
 if __name__ == "__main__":
     vtkObject.GlobalWarningDisplayOff()  # errors are seen by the observer

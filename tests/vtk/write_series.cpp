@@ -91,12 +91,29 @@ void write_all(const std::filesystem::path& folder) {
     written.add(again, "turning & more", step, true);
 }
 
+/// Two bonds that broke, and a frame from before.
+void write_breaks(const std::filesystem::path& folder) {
+  const std::vector<assembly::BondBreak> breaks{
+      {.step = 3, .time = 0.25, .first = 7, .second = 1, .place = {1, 2, 3}, .normal = {0, 0, 1}},
+      {.step = 5,
+       .time = 1.0 / 3,
+       .first = 12'345'678'901,
+       .second = 2,
+       .place = {-0.1, 0, 1e-30},
+       .normal = {0.6, -0.8, 0},
+       .mode = contact::BreakMode::shear}};
+  io::Series cracks(folder, "cracks", io::Series::Of::breaks);
+  cracks.add(test::state_of(cluster(0, false), 0, 0));
+  cracks.add(test::state_of(cluster(5, false), 5, 0.5), breaks);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   try {
     write_all(argv[1]);
+    write_breaks(argv[1]);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace eigengrain::io {
 
@@ -24,6 +25,8 @@ class BreakFile {
             std::optional<std::int64_t> continue_from = {});
 
   void add(std::span<const assembly::BondBreak> breaks);
+  /// All lines of the table, those taken over included (rules are not in it).
+  std::span<const assembly::BondBreak> all() const { return all_; }
   /// Waits until the lines are on the disk.
   void sync();
 
@@ -33,9 +36,10 @@ class BreakFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
-  void take_over(std::int64_t step) const;
+  void take_over(std::int64_t step);
 
   std::filesystem::path file_name_;
+  std::vector<assembly::BondBreak> all_;
   std::unique_ptr<std::FILE, Close> file_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,9 +24,12 @@ namespace eigengrain::io {
 ///
 /// Of surfaces, a frame has their triangles where they are, with the number of the wall (from 0) that each
 /// belongs to.
+///
+/// Of breaks, a frame has a point for each bond that broke until then, where its contact was: time, step,
+/// mode (0: tension, 1: shear), ball_a, ball_b and normal.
 class Series {
  public:
-  enum class Of { balls, surfaces };
+  enum class Of { balls, surfaces, breaks };
 
   /// Nothing is written before the first frame, which replaces the list of an earlier run.
   /// stress  whether frames of balls have their stress
@@ -37,7 +41,9 @@ class Series {
   void continue_from(std::int64_t step);
 
   /// Writes the frame of the state; nothing if there is a frame of this step. Steps must increase.
-  void add(const assembly::State& state);
+  ///
+  /// breaks  all bonds that broke until then; for a series of breaks
+  void add(const assembly::State& state, std::span<const assembly::BondBreak> breaks = {});
 
   std::filesystem::path list_file() const { return folder_ / (stem_ + ".pvd"); }
   std::filesystem::path frame_file(std::int64_t step) const { return folder_ / frame_name(step); }
