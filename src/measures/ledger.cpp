@@ -167,7 +167,7 @@ Ledger ledger_of(const State& state) {
   EIGENGRAIN_ASSERT(state.ledger.has_value(), state.step);
   const Motion motion = motion_of(state);
   Ledger result{.kinetic = motion.kinetic,
-                .elastic = elastic_energy(state.model),
+                .elastic = measures::elastic_energy(state.model),
                 .gravitational = potential_of(state.model),
                 .integrals = state.ledger->integrals};
   result.integrals += motion.half;
@@ -201,7 +201,7 @@ void begin_ledger(State& state) {
         "step; leave `ledger` out of what the table holds (after one step with a velocity_gradient of zero "
         "it may begin)");
   const Motion motion = motion_of(state);
-  const ElasticEnergy elastic = elastic_energy(state.model);
+  const ElasticEnergy elastic = measures::elastic_energy(state.model);
   assembly::EnergyLedger ledger{.initial = motion.kinetic + elastic.total()};
   // The next kick adds the other half of the step behind as well, which is not this ledger's.
   ledger.integrals.damping = -motion.half.damping;
