@@ -44,6 +44,32 @@ TEST(DeformingCell, GoesOnToTheBit) {
   expect_to_continue(packing(mixed), 1200, {0, 1, 333, 900});
 }
 
+// Clumps and a fixed ball, a floor with friction, and a bond across the cell.
+TEST(DeformingCell, GoesOnToTheBitWithClumpsBondsAndAFloor) {
+  const model::Scene scene = io::read_scene_text(R"(
+gravity: [0, 0, -9.81]
+materials: [{name: grain, density: 2500}, {name: glue, density: 2500}]
+contacts:
+  - {between: [glue, glue], law: linear, kn: 1e4, bond: {kind: parallel, kn: 1e9, ks: 4e8}}
+  - {between: [any, any], law: linear, kn: 1e4, ks: 5e3, friction: 0.4, beta_n: 0.1}
+periodic: {box: [0.06, 0.06, 1], axes: [x, y], velocity_gradient: [[2, 20, 0], [-5, -1, 0], [0, 0, 0]]}
+balls:
+  - {position: [0.05, 0.05, 0.005], radius: 5 mm, material: grain, fix: [x, y]}
+  - {position: [0.004, 0.01, 0.005], radius: 5 mm, material: glue}
+  - {position: [0.0541, 0.01, 0.005], radius: 5 mm, material: glue}
+clumps:
+  - balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [6 mm, 0, 0], radius: 4 mm}]
+    material: grain
+    instances:
+      - {position: [0.02, 0.02, 0.01], velocity: [1, 0, -1], spin: [10, 0, 40]}
+      - {position: [0.045, 0.03, 0.01], velocity: [-1, 0.3, 0]}
+walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]
+timestep: {policy: bound}
+)",
+                                                 ".", "heap.yaml");
+  expect_to_continue(scene, 1200, {1, 700});
+}
+
 TEST(DeformingCell, DoesNotDependOnTheNumberOfThreads) {
   // Enough balls for several chunks.
   const model::Scene scene = packing(mixed, 85);
