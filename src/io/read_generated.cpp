@@ -153,8 +153,6 @@ std::optional<FillWish> read_wish(const Section& section, const SceneDraft& draf
   FillWish wish;
   const auto fill = section.text("fill");
   wish.dense = fill && *fill == "dense";
-  if (wish.dense && draft.repetition)
-    section.report("fill", "dense would press on what is there; take random, and let the balls settle");
   const bool density = read_density(section, wish);
   const auto sizes = read_sizes(section);
   const auto region = read_region(section, draft.scene.cell);

@@ -81,11 +81,32 @@ std::vector<KeyDescription> body_keys() {
                  .unit = "rad/s",
                  .example = "[0, 10, 0]",
                  .description = "angular velocity from now on"},
+                {.path = "stages[].bodies[].force",
+                 .kind = vector,
+                 .unit = "N",
+                 .example = "[10 N, 0, 0]",
+                 .description = "applied at the centre of each from now on"},
+                {.path = "stages[].bodies[].moment",
+                 .kind = vector,
+                 .unit = "N m",
+                 .example = "[0, 0.1, 0]",
+                 .description = "applied to each from now on"},
+                {.path = "stages[].bodies[].damping",
+                 .kind = quantity,
+                 .range = {.low = 0, .high = 1, .high_allowed = false},
+                 .example = "0.2",
+                 .description = "local damping of their own from now on"},
                 {.path = "stages[].bodies[].radius_by",
                  .kind = quantity,
                  .range = positive_range,
                  .example = "1.01",
-                 .description = "factor of the radius, at once and at the same density; not of clumps"}});
+                 .description = "factor of the radius, at the same density; not of clumps"},
+                {.path = "stages[].bodies[].over",
+                 .kind = quantity,
+                 .unit = "s",
+                 .range = positive_range,
+                 .example = "0.1 s",
+                 .description = "the time in which `radius_by` is reached; absent: at once"}});
   return keys;
 }
 
@@ -127,7 +148,8 @@ std::vector<KeyDescription> stage_run_keys() {
 std::vector<KeyDescription> added_ball_keys() {
   std::vector<KeyDescription> keys;
   for (KeyDescription key : ball_keys()) {
-    if (!key.path.starts_with("balls")) continue;
+    if (!key.path.starts_with("balls") || key.path == "balls[].mean_overlap") continue;
+    if (key.path == "balls[].fill") key.words = {"random"};
     key.path = "stages[]." + key.path;
     if (key.path == "stages[].balls") {
       key.required = false;

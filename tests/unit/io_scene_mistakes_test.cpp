@@ -373,7 +373,8 @@ TEST(Mistakes, Settings) {
   EXPECT_THAT(rest("run: {time: 5 m}"), ElementsAre(HasSubstr("\"5 m\" is a length; a time is wanted")));
   EXPECT_THAT(rest("run: {steps: 0}"), ElementsAre(HasSubstr("run.steps: 0; a whole number >= 1 is wanted")));
   EXPECT_THAT(rest("run: {steps: 1.5}"), ElementsAre(HasSubstr("run.steps: \"1.5\" is not a whole number")));
-  EXPECT_THAT(rest("run: {until: {}}"), ElementsAre(HasSubstr("run.until: unbalanced is missing")));
+  EXPECT_THAT(rest("run: {until: {}}"),
+              ElementsAre(HasSubstr("run.until: says nothing; add e.g. \"unbalanced: 1e-5\"")));
   EXPECT_THAT(rest("run: {until: {unbalanced: 0}}"),
               ElementsAre(HasSubstr("run.until.unbalanced: \"0\" is out of")));
 }

@@ -111,6 +111,34 @@ std::vector<std::string> scenes_with_room() {
                                   materials + no_law + ball + table + region,
                                   materials + no_law + ball + sphere,
                                   materials + no_law + ball + region_box};
+  const std::string rest = materials + no_law + ball;
+  const auto in_stage = [](std::string keys) {
+    return "stages: [{" + keys.substr(0, keys.size() - 1) + "}]\n";
+  };
+  for (const std::string& balls :
+       {ball, file, lattice, loose, uniform, normal, power, shares, passing, growing})
+    scenes.push_back(rest + in_stage(balls));
+  for (const std::string shape :
+       {"", ", sphere: {centre: [0, 0, 0], radius: 1}", ", box: {min: [-1, -1, -1], max: [0.5, 0.5, 0.5]}"}) {
+    const std::string lid = "[{name: lid" + shape + "}]";
+    scenes.push_back(rest + "groups: " + lid + "\n");
+    scenes.push_back(rest + "stages: [{groups: " + lid + "}]\n");
+    scenes.push_back(rest + "groups: [{name: lid}]\nstages: [{bodies: [{radius_by: 1" + shape + "}]}]\n");
+    scenes.push_back(
+        materials + ball + plane +
+        "contacts: [{name: soft, between: [any, any], law: linear, kn: 1}, {between: [any, any], law: "
+        "none}]\ngroups: [{name: lid}]\nstages: [{contacts: [{take: soft" +
+        shape + "}]}]\n");
+  }
+  scenes.push_back(materials + ball +
+                   "contacts: [{between: [any, any], law: linear, kn: 1}]\nstages: [{run: {steps: 1}}]\n");
+  scenes.push_back(rest + "stages: [{relax: {tolerance: 1e-9}}]\n");
+  for (const std::string until : {"run: {until: {wall_force: {wall: wall 1 (plane), at_least: 1 N}}}"})
+    for (const std::string& text : {until + "\n", "stages: [{" + until + "}]\n"})
+      scenes.push_back(rest + plane + text);
+  scenes.push_back(
+      materials + ball +
+      "contacts: [{between: [any, any], law: linear, kn: 1}, {between: [any, any], law: none}]\n");
   for (const contact::LawDescription& law : contact::law_descriptions()) {
     std::string needed;
     for (const KeyDescription* key : section_keys("contacts[]", law.name))
