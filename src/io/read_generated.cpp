@@ -143,7 +143,7 @@ bool read_density(const Section& section, FillWish& wish) {
       section.report_missing("fraction", wish.dense ? ", or mean_overlap" : "");
     return false;
   }
-  wish.mean_overlap = section.quantity("mean_overlap");
+  if (section.has("mean_overlap")) wish.mean_overlap = section.quantity("mean_overlap");
   const auto fraction = section.has("fraction") ? section.quantity("fraction") : fraction_before_compression;
   wish.fraction = fraction.value_or(0);
   return section.has("mean_overlap") ? wish.mean_overlap.has_value() : fraction.has_value();

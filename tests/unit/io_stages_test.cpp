@@ -104,7 +104,7 @@ TEST(Stages, MistakesInThem) {
   EXPECT_THAT(reported("stages: [{run: {until: {wall_force: {wall: lid, at_least: 3 N}}}}]"),
               ElementsAre(HasSubstr("there is no wall \"lid\", as the scene has none")));
   EXPECT_THAT(reported("stages: [{bodies: [{radius_by: 0}]}]"),
-              ElementsAre(HasSubstr("radius_by: \"0\" is out of range"), HasSubstr("changes nothing")));
+              ElementsAre(HasSubstr("radius_by: \"0\" is out of range")));
 }
 
 TEST(Stages, WhatTheySetIsTriedOutBeforeAnythingRuns) {
@@ -134,7 +134,7 @@ TEST(Stages, BallsThatComeInAreTriedOutToo) {
   EXPECT_THAT(
       reported("stages: [{balls: [{fill: dense, fraction: 0.3, radius: 1 mm, material: grain, box: {min: "
                "[0, 0, 0], max: [0.01, 0.01, 0.01]}}]}]"),
-      ElementsAre(HasSubstr("stages[0].balls[0].fill: dense would press on what is there")));
+      ElementsAre(HasSubstr("stages[0].balls[0].fill: \"dense\" is none of random")));
 }
 
 }  // namespace

@@ -104,7 +104,8 @@ timestep: {policy: bound}
   assembly::State state = cycle.release();
   const Mat3 edges = state.model.cell.edges;
   ASSERT_GT(std::abs(edges(0, 2)), 1e-3);
-  const relaxation::RelaxResult result = relaxation::relax(state, {.tolerance = 1e-9, .report = {}, .interrupted = {}});
+  const relaxation::RelaxResult result =
+      relaxation::relax(state, {.tolerance = 1e-9, .report = {}, .interrupted = {}});
   EXPECT_TRUE(result.converged) << result.method;
   EXPECT_LT(result.end.mean, 1e-9);
   EXPECT_TRUE(state.model.cell.rate.isZero(0));
