@@ -154,7 +154,7 @@ std::vector<KeyDescription> added_ball_keys() {
     if (key.path == "stages[].balls") {
       key.required = false;
       key.fallback = "[]";
-      key.example = "[{fill: random, fraction: 0.2, radius: 5 mm, material: grain}]";
+      key.example = "[{position: [0.1, 0.1, 0.3], radius: 5 mm, material: grain}]";
       key.description =
           "balls that come in, with the keys of `balls`, numbered on; those that would overlap balls or "
           "walls "
