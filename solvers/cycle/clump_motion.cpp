@@ -50,8 +50,7 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
     clumps.spin[c] = rotation.theta / dt;
     work.resisted(resistance, before, clumps.spin[c]);
   }
-  if (!bodies.applied_force.empty()) work.applied(bodies.applied_force[holder], velocity);
-  if (!bodies.applied_moment.empty()) work.applied(bodies.applied_moment[holder], clumps.spin[c]);
+  own.count_applied(holder, velocity, clumps.spin[c], work);
   for (auto m = static_cast<std::size_t>(clumps.starts[c]);
        m < static_cast<std::size_t>(clumps.starts[c + 1]); ++m) {
     const auto i = static_cast<std::size_t>(clumps.member[m]);

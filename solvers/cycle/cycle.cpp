@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/selection.hpp"
+#include "eigengrain/base/assert.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/contact/orientation.hpp"
@@ -81,8 +82,7 @@ Cycle::Cycle(State state, TimestepPolicy policy)
       state_.list.wall_lever.size() != state_.model.wall_poses.size())
     list_anew();
   if (state_.next_dt == 0) choose_timestep();
-  if (state_.ledger && state_.model.cell.deforms())
-    throw InputError("the energy ledger does not count the work of a periodic cell that deforms");
+  EIGENGRAIN_ASSERT(!state_.ledger || !state_.model.cell.deforms());  // refused by begin_ledger
 }
 
 template <class Work, class Properties, class Frame>
@@ -90,6 +90,7 @@ double Cycle::move(double duration, double dt, const Frame& frame) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
   const Properties own(state_.model);
+  const Vec3 no_spin = Vec3::Zero();
   const bool clumps = !bodies.clumps.empty();
   if (clumps) move_clumps<Work>(state_, duration, dt, frame);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
@@ -110,7 +111,7 @@ double Cycle::move(double duration, double dt, const Frame& frame) {
         if (state_.turns())
           kick(bodies.spin[i], own.with_applied(i, state_.moment[i]), own.moment_of_inertia(i), duration,
                damping, fixed.rotation(), work, NoFlow{});
-        own.count(i, work);
+        own.count_applied(i, bodies.velocity[i], state_.turns() ? bodies.spin[i] : no_spin, work);
       }
       double squared = 0;
       if constexpr (Frame::moves)
@@ -162,10 +163,10 @@ void Cycle::step() {
   const bool counts_walls = state_.ledger && walls_.any();
   std::vector<assembly::WallLoad> before;
   if (counts_walls) before = assembly::wall_loads(state_.model);
+  Growth growth(state_, dt);                  // with walls and bodies where they are at t
   if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
   const double duration = 0.5 * (state_.dt + dt);
   const bool deforms = state_.model.cell.deforms();
-  Growth growth(state_, dt);
   double way = 0;
   double room = half_skin;  // for bodies while the list holds
   if (deforms) {

@@ -48,7 +48,7 @@ std::optional<Meeting> any_clump(const model::Bodies& bodies, std::span<const st
   for (const std::int32_t row : rows) {
     const std::int32_t clump = clumps.of(row);
     if (clump == model::Clumps::none || bodies.material[row] != material) continue;
-    const double factor = bodies.mass_factor.empty() ? 1.0 : bodies.mass_factor[row];
+    const double factor = model::mass_factor_of(bodies, static_cast<std::size_t>(row));
     const double mass = factor * clumps.mass[clump];
     const double inertia = factor * clumps.inertia[clump].minCoeff();
     if (!result)

@@ -20,7 +20,8 @@ class AllAlike {
   Vec3 load(std::size_t row) const { return model_.bodies.mass[row] * model_.gravity; }
   const Vec3& with_applied(std::size_t /*row*/, const Vec3& moment) const { return moment; }
   template <class Work>
-  void count(std::size_t /*row*/, Work& /*work*/) const {}
+  void count_applied(std::size_t /*row*/, const Vec3& /*velocity*/, const Vec3& /*spin*/,
+                     Work& /*work*/) const {}
 
  private:
   const assembly::Model& model_;
@@ -43,12 +44,12 @@ class EachItsOwn {
   Vec3 with_applied(std::size_t row, const Vec3& moment) const {
     return moment + assembly::moment_on(model_, row);
   }
-  /// The work of the applied force and moment, with the velocities of the step ahead.
+  /// The work of the applied force and moment of a row, with a velocity and spin of the step ahead.
   template <class Work>
-  void count(std::size_t row, Work& work) const {
+  void count_applied(std::size_t row, const Vec3& velocity, const Vec3& spin, Work& work) const {
     const model::Bodies& bodies = model_.bodies;
-    if (!bodies.applied_force.empty()) work.applied(bodies.applied_force[row], bodies.velocity[row]);
-    if (!bodies.applied_moment.empty()) work.applied(bodies.applied_moment[row], bodies.spin[row]);
+    if (!bodies.applied_force.empty()) work.applied(bodies.applied_force[row], velocity);
+    if (!bodies.applied_moment.empty()) work.applied(bodies.applied_moment[row], spin);
   }
 
  private:

@@ -70,12 +70,12 @@ ExplicitRun::ExplicitRun(Input input)
       cycle_(started(std::move(input.state))),
       watch_(cycle_.state()),
       verdict_(judge_step(state(), state().next_dt)),
-      stem_(std::move(input.stem)),
-      folder_(std::move(input.folder)),
+      input_(std::move(input)),
       first_step_(state().step) {}
 
 Input ExplicitRun::take_input() {
-  return {.state = cycle_.release(), .continued = true, .stem = stem_, .folder = folder_};
+  input_.state = cycle_.release();
+  return std::move(input_);
 }
 
 void ExplicitRun::go() {

@@ -11,8 +11,6 @@
 #include "step_check.hpp"
 
 #include <cstdint>
-#include <filesystem>
-#include <string>
 #include <vector>
 
 namespace eigengrain::app {
@@ -49,8 +47,7 @@ class ExplicitRun {
   cycle::Watch watch_;
   StepVerdict verdict_;
   Progress progress_;
-  std::string stem_;
-  std::filesystem::path folder_;
+  Input input_;  ///< but for its state
   std::int64_t first_step_;
   double seconds_ = 0;
   std::int64_t broken_ = 0;

@@ -1,5 +1,6 @@
 #include "goal.hpp"
 
+#include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/energies.hpp"
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
@@ -37,14 +38,12 @@ Goal::Goal(const assembly::State& state) : run_(state.settings.run) {
 }
 
 void Goal::look(const assembly::State& state) {
-  met_ = true;
-  if (run_.unbalanced) {
+  met_ = state.step > first_step_;  // at the start of a run everything may be about to move
+  if (met_ && run_.unbalanced) {
     const assembly::Balance balance = assembly::balance_of(state);
     met_ = balance.unsupported == 0 && balance.bodies > 0 && balance.mean < *run_.unbalanced;
   }
-  // At the start of a run everything may be about to move.
-  if (met_ && run_.kinetic)
-    met_ = state.step > first_step_ && assembly::energies_of(state).kinetic < *run_.kinetic;
+  if (met_ && run_.kinetic) met_ = assembly::energies_of(state).kinetic < *run_.kinetic;
   if (met_ && run_.wall_force)
     met_ = assembly::wall_loads(state.model)[wall_].force.norm() >= run_.wall_force->at_least;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/state.hpp"
 
 #include <cstdint>

@@ -5,6 +5,7 @@
 #include "verbs.hpp"
 
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 
@@ -13,7 +14,10 @@ namespace eigengrain::app {
 /// What a verb is asked about: a scene, or a state that an earlier run saved.
 struct Input {
   assembly::State state;
-  bool continued = false;        ///< from a state file
+  bool continued = false;  ///< from a state file
+  /// Names of the results that were opened since the input was read: later stages go on with these, and begin
+  /// others anew, if the input was a scene.
+  std::set<std::string> opened{};
   std::string stem;              ///< of the names of results
   std::filesystem::path folder;  ///< of results
 };

@@ -45,9 +45,13 @@ io::HistoryValues values_for(const model::History& history, const State& state) 
 
 }  // namespace
 
-RunOutputs::RunOutputs(const Input& input)
+RunOutputs::RunOutputs(Input& input)
     : choice_(input.state.settings.outputs), state_file_(input.folder / (input.stem + ".h5")) {
   const std::int64_t step = input.state.step;
+  // What lies there otherwise is of an older run.
+  const auto ours = [&](const std::string& name) {
+    return !input.opened.insert(name).second || input.continued;
+  };
   const auto& rules = input.state.settings.contacts;
   const bool bonds =
       std::any_of(rules.begin(), rules.end(), [](const auto& rule) { return rule.bond.has_value(); });
@@ -57,16 +61,17 @@ RunOutputs::RunOutputs(const Input& input)
       series_.emplace_back(input.folder, input.stem + "_walls", io::Series::Of::surfaces);
     if (bonds) series_.emplace_back(input.folder, input.stem + "_breaks", io::Series::Of::breaks);
     for (io::Series& series : series_)
-      if (input.continued && std::filesystem::exists(series.list_file())) series.continue_from(step);
+      if (ours(series.list_file().filename().string()) && std::filesystem::exists(series.list_file()))
+        series.continue_from(step);
   }
   if (bonds)
     breaks_.emplace(input.folder, input.stem + "-breaks.csv",
-                    input.continued ? std::optional(step) : std::nullopt);
+                    ours(input.stem + "-breaks.csv") ? std::optional(step) : std::nullopt);
   for (model::History history : input.state.settings.histories) {
     // A state with a name of its own, as relax makes it, is another run: its tables stand beside the scene's.
     if (input.stem != std::filesystem::path(input.state.settings.name).stem())
       history.file = input.stem + "-" + history.file;
-    const bool there = input.continued && std::filesystem::exists(input.folder / history.file);
+    const bool there = ours(history.file) && std::filesystem::exists(input.folder / history.file);
     histories_.emplace_back(input.folder, history, assembly::wall_names(input.state.model),
                             there ? std::optional(step) : std::nullopt);
   }

@@ -17,8 +17,8 @@ namespace eigengrain::app {
 /// All that a run writes: its state (FOLDER/STEM.h5), frames for ParaView, and histories.
 class RunOutputs {
  public:
-  /// Takes over what an earlier part of the run has written.
-  explicit RunOutputs(const Input& input);
+  /// Takes over what an earlier part of the run has written, and notes in the input what it opens.
+  explicit RunOutputs(Input& input);
 
   /// The first step after this one at which something is due.
   std::int64_t next(std::int64_t step) const;

@@ -1,7 +1,9 @@
 #include "staged_run.hpp"
 
+#include "eigengrain/assembly/add_balls.hpp"
+#include "eigengrain/assembly/balance.hpp"
+#include "eigengrain/assembly/change_bodies.hpp"
 #include "eigengrain/assembly/choose_contacts.hpp"
-#include "eigengrain/assembly/edit.hpp"
 #include "eigengrain/assembly/selection.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/io/scene_reader.hpp"
@@ -17,7 +19,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace eigengrain::app {
@@ -100,13 +101,18 @@ void StagedRun::begin() {
         "{}: {} more{}\n", title(), counted(added.balls, "ball", "balls"),
         added.left_out > 0 ? fmt::format(", {} left out where others are", grouped(added.left_out)) : "");
   }
-  assembly::make_groups(state.model.bodies, stage.groups, state.groups);
+  assembly::make_groups(state.model.bodies, stage.groups, state.groups,
+                        fmt::format("stages[{}].groups", index));
   for (std::size_t k = 0; k < stage.bodies.size(); ++k)
     assembly::change_bodies(state, stage.bodies[k], fmt::format("stages[{}].bodies[{}]", index, k));
   for (std::size_t k = 0; k < stage.contacts.size(); ++k) {
     const std::int64_t chosen =
         assembly::choose_contacts(state, stage.contacts[k], fmt::format("stages[{}].contacts[{}]", index, k));
     fmt::print("{}: {} by {}\n", title(), counted(chosen, "contact", "contacts"), stage.contacts[k].take);
+  }
+  if (!stage.run.any() && !stage.relax && !state.breaks.empty()) {  // else these write them
+    broken_ += std::ssize(state.breaks);
+    RunOutputs(input_).write_breaks(std::exchange(state.breaks, {}));
   }
   state.progress.begun = true;
   state.progress.first_step = state.step;
@@ -131,7 +137,7 @@ void StagedRun::run() {
                                {"does", "run"},
                                {"steps", steps},
                                {"time", state().time},
-                               {"met", !goal.missed()}};
+                               {"met", goal.reached(state()) && !goal.missed()}};
   add_balance(entry, balance);
   report_.push_back(std::move(entry));
   fmt::print("{}: {} in {}, t = {:.6g} s{}\n  {}\n", title(), counted(steps, "step", "steps"),
@@ -147,11 +153,14 @@ void StagedRun::relax() {
   broken_ += std::ssize(input_.state.breaks);
   outputs.write_breaks(std::exchange(input_.state.breaks, {}));
   outputs.save(state());
-  input_.continued = true;
-  nlohmann::ordered_json entry{
-      {"stage", state().progress.stage},       {"name", stage().name},    {"does", "relax"},
-      {"converged", result.converged},         {"method", result.method}, {"steps", result.explicit_steps},
-      {"iterations", result.newton_iterations}};
+  nlohmann::ordered_json entry{{"stage", state().progress.stage},
+                               {"name", stage().name},
+                               {"does", "relax"},
+                               {"converged", result.converged},
+                               {"method", result.method},
+                               {"steps", result.explicit_steps},
+                               {"time", state().time},
+                               {"iterations", result.newton_iterations}};
   add_balance(entry, result.end);
   report_.push_back(std::move(entry));
   fmt::print("{}: {}, {} of Newton, {}\n  {}\n", title(),
@@ -169,7 +178,7 @@ void StagedRun::finish() {
   const std::int64_t repeat = stage().repeat;
   model::StageProgress& progress = input_.state.progress;
   progress.begun = false;
-  if (++progress.repetition == repeat) {
+  if (++progress.repetition >= repeat) {
     ++progress.stage;
     progress.repetition = 0;
   }

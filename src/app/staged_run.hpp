@@ -19,6 +19,8 @@ class StagedRun {
   /// Ends after the last stage or at an interrupt.
   void go();
 
+  /// Whether no stage is left.
+  bool done() const { return !in_hand(); }
   const assembly::State& state() const { return input_.state; }
   const std::filesystem::path& state_file() const { return state_file_; }
   /// One entry a stage, and repetition, that was done.

@@ -69,10 +69,16 @@ void run_once(Input input, const Options& options) {
   conclude({run.steps(), run.seconds(), run.broken()}, run.state(), run.outputs().state_file(), nullptr,
            options);
   if (run.goal().missed()) fmt::print("{} in that time\n", run.goal().text_of_missed());
+  if (run.steps() == 0 && !run.goal().missed())
+    fmt::print("nothing to do: what the scene runs to is reached; --set run.steps={} would go on\n",
+               run.state().step + 10000);
 }
 
 void run_stages(Input input, const Options& options) {
   StagedRun run(std::move(input));
+  if (run.done())
+    fmt::print("all stages are done; --set \"stages=[]\" --set run.steps={} would go on\n",
+               run.state().step + 10000);
   run.go();
   conclude({run.steps(), run.seconds(), run.broken()}, run.state(), run.state_file(), &run.report(), options);
 }

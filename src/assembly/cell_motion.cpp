@@ -3,7 +3,6 @@
 #include "eigengrain/assembly/state.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include "eigengrain/assembly/choose_contacts.hpp"
 
 #include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/selection.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
 #include "eigengrain/base/error.hpp"
@@ -38,7 +39,7 @@ class Choice {
  public:
   Choice(const State& state, const model::ContactChoice& choice, const std::string& where)
       : model_(state.model), selected_(static_cast<std::size_t>(state.model.bodies.size()), 0) {
-    for (const std::int32_t row : selected(model_.bodies, state.groups, choice.of))
+    for (const std::int32_t row : selected(model_.bodies, state.groups, choice.of, where))
       selected_[static_cast<std::size_t>(row)] = 1;
     if (!choice.wall) return;
     const std::vector<std::string> names = wall_names(model_);
@@ -46,6 +47,10 @@ class Choice {
     if (found == names.end())
       throw InputError(fmt::format("{}: there is no wall \"{}\"", where, *choice.wall));
     wall_ = static_cast<std::int32_t>(found - names.begin());
+    if (static_cast<std::size_t>(*wall_) >= model_.walls.size())
+      throw InputError(fmt::format(
+          "{}: {} is a surface of triangles, whose contacts keep the entry of their materials; name a plane",
+          where, *choice.wall));
   }
 
   template <class Kinematics>
@@ -69,7 +74,8 @@ std::vector<LooseContact> take_out(Group& group, const Model& model, const Choic
   using Kinematics = typename Group::KinematicsType;
   using Law = typename Group::LawType;
   std::vector<LooseContact> taken;
-  if constexpr (!contact::BondLaw<Law>) {
+  // The triangles of a surface share out what a ball feels of it, so their pairs stay together.
+  if constexpr (!contact::BondLaw<Law> && !std::is_same_v<Kinematics, contact::BallFacet>) {
     const contact::Placement placement = model.placement();
     std::size_t kept = 0;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
@@ -104,12 +110,11 @@ void put_in(Group& group, const std::vector<LooseContact>& contacts, const Model
   }
 }
 
-/// The contacts that are meant, out of all groups of other entries: by the kinematics of each.
-std::vector<std::pair<std::string_view, std::vector<LooseContact>>> take_all(Model& model, std::int32_t rule,
+/// The contacts that are meant, out of all groups: by the kinematics of each.
+std::vector<std::pair<std::string_view, std::vector<LooseContact>>> take_all(Model& model,
                                                                              const Choice& choice) {
   std::vector<std::pair<std::string_view, std::vector<LooseContact>>> taken;
   model.contacts.for_each_group([&](auto& group) {
-    if (group.rule == rule) return;
     auto found = take_out(group, model, choice);
     if (!found.empty())
       taken.emplace_back(std::decay_t<decltype(group)>::KinematicsType::name, std::move(found));
@@ -118,8 +123,8 @@ std::vector<std::pair<std::string_view, std::vector<LooseContact>>> take_all(Mod
 }
 
 /// The group of an entry for a kinematics, made if there is none.
-AnyGroup& group_of(Model& model, std::string_view kinematics, std::int32_t rule,
-                   const model::Scene& settings) {
+AnyGroup& contact_group(Model& model, std::string_view kinematics, std::int32_t rule,
+                        const model::Scene& settings) {
   std::vector<AnyGroup>& groups = model.contacts.groups;
   const auto same = [&](const AnyGroup& any) {
     return std::visit(
@@ -139,14 +144,15 @@ std::int64_t choose_contacts(State& state, const model::ContactChoice& choice, c
   const std::int32_t rule = rule_of(state.settings, choice.take, where);
   Model& model = state.model;
   std::int64_t count = 0;
-  for (const auto& [kinematics, contacts] : take_all(model, rule, Choice(state, choice, where))) {
+  for (const auto& [kinematics, contacts] : take_all(model, Choice(state, choice, where))) {
     std::visit([&, &loose = contacts](auto& group) { put_in(group, loose, model); },
-               group_of(model, kinematics, rule, state.settings));
+               contact_group(model, kinematics, rule, state.settings));
     count += std::ssize(contacts);
   }
   if (count == 0)
     throw InputError(fmt::format("{}: no contact that acts is meant; look at where the balls are", where));
   renew_list(state, state.list.skin);
+  renew_forces(state);
   state.next_dt = 0;
   state.ledger.reset();
   return count;

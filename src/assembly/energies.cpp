@@ -8,19 +8,15 @@
 namespace eigengrain::assembly {
 namespace {
 
-/// What each body adds is of its inertial mass: that is what the cycle moves.
-double factor_of(const model::Bodies& bodies, std::size_t row) {
-  return bodies.mass_factor.empty() ? 1.0 : bodies.mass_factor[row];
-}
-
-/// Adds what a clump has, with its tensor of inertia as it lies at t.
+/// Adds what a clump has, with its tensor of inertia as it lies at t, of its inertial mass: that is what the
+/// cycle moves.
 void add_clump(const State& state, std::int32_t clump, const Fluctuation& fluctuation,
                const BodyForces& gathered, Energies& result) {
   const model::Bodies& bodies = state.model.bodies;
   const model::Clumps& clumps = bodies.clumps;
   const auto c = static_cast<std::size_t>(clump);
   const auto holder = static_cast<std::size_t>(clumps.holder(clump));
-  const double factor = factor_of(bodies, holder);
+  const double factor = model::mass_factor_of(bodies, holder);
   const double m = factor * clumps.mass[c];
   const Vec3 v = fluctuation.of(clumps.velocity[c], clumps.position[c]);
   const Vec3 a = (gathered.force[holder] + load_on(state.model, holder)) / m;

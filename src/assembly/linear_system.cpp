@@ -13,7 +13,7 @@ std::vector<double> mass_diagonal(const model::Bodies& bodies, const Unknowns& u
     const std::int32_t body = unknowns.body(block);
     const auto row = static_cast<std::size_t>(body);
     if (unknowns.is_rotation(block) && unknowns.axes(body) != nullptr) {
-      const double factor = bodies.mass_factor.empty() ? 1.0 : bodies.mass_factor[row];
+      const double factor = model::mass_factor_of(bodies, static_cast<std::size_t>(row));
       const Vec3 inertia = factor * bodies.clumps.inertia[bodies.clumps.of(body)];
       diagonal.insert(diagonal.end(), inertia.begin(), inertia.end());
       continue;

@@ -40,7 +40,7 @@ void BallList::add(const Vec3& position, double radius, const BallKind& kind, st
   if (kind.growth && bodies.ramp.empty()) bodies.ramp.resize(bodies.position.size());
   if (kind.growth || !bodies.ramp.empty()) bodies.ramp.push_back(ramp);
   bodies.identity.push_back(bodies.size());
-  bodies.position.push_back(draft_.scene.cell.wrapped(position));
+  bodies.position.push_back(draft_.wraps ? draft_.scene.cell.wrapped(position) : position);
   bodies.radius.push_back(radius);
   bodies.mass.push_back(mass);
   bodies.inertia.push_back(inertia);

@@ -14,17 +14,16 @@ constexpr std::string_view axis_names = "xyz";
 /// How far centres may lie from the plane of the first, in radii: files round.
 constexpr double tolerance = 1e-6;
 
-void check_places(const SceneDraft& draft, int normal, Diagnostics& diagnostics) {
+void check_places(const SceneDraft& draft, int normal, double plane, Diagnostics& diagnostics) {
   const model::Bodies& balls = draft.scene.bodies;
-  for (std::size_t i = 1; i < balls.position.size(); ++i) {
-    const double way = balls.position[i][normal] - balls.position[0][normal];
+  for (std::size_t i = 0; i < balls.position.size(); ++i) {
+    const double way = balls.position[i][normal] - plane;
     if (std::abs(way) <= tolerance * balls.radius[i]) continue;
     diagnostics.add(
         draft.ball_places.of(static_cast<std::int32_t>(i)),
         fmt::format("ball {0}: {1} = {2} m, and ball 0 has {1} = {3} m; the balls of a planar scene lie in "
                     "one plane: move the ball, or say `planar: {{normal: ...}}`",
-                    i, axis_names[static_cast<std::size_t>(normal)], balls.position[i][normal],
-                    balls.position[0][normal]),
+                    i, axis_names[static_cast<std::size_t>(normal)], balls.position[i][normal], plane),
         "out of the plane");
   }
 }
@@ -85,6 +84,13 @@ void read_planar(const Section& root, SceneDraft& draft) {
   draft.planar = Plane2d{.normal = static_cast<int>(axis_names.find(*normal)), .disks = *shape == "disk"};
 }
 
+void check_planar_balls(const SceneDraft& draft, double plane, Diagnostics& diagnostics) {
+  if (!draft.planar) return;
+  check_places(draft, draft.planar->normal, plane, diagnostics);
+  check_motion(draft, draft.planar->normal, diagnostics);
+  check_loads(draft, draft.planar->normal, diagnostics);
+}
+
 void check_planar(const Section& root, const SceneDraft& draft) {
   if (!draft.planar) return;
   const int normal = draft.planar->normal;
@@ -92,9 +98,8 @@ void check_planar(const Section& root, const SceneDraft& draft) {
     root.report("gravity",
                 fmt::format("{} m/s2 along {}, across the plane, where nothing can move; write 0 there",
                             draft.scene.gravity[normal], axis_names[static_cast<std::size_t>(normal)]));
-  check_places(draft, normal, root.diagnostics());
-  check_motion(draft, normal, root.diagnostics());
-  check_loads(draft, normal, root.diagnostics());
+  if (!draft.scene.bodies.position.empty())
+    check_planar_balls(draft, draft.scene.bodies.position[0][normal], root.diagnostics());
 }
 
 }  // namespace eigengrain::io

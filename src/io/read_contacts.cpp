@@ -29,6 +29,11 @@ std::optional<std::int32_t> read_side(const Section& section, const std::string&
 }
 
 bool read_between(const Section& section, const model::Scene& scene, ContactRule& rule) {
+  if (!section.has("between")) {
+    if (section.has("name")) return true;  // for contacts that exist, of any materials
+    section.report_missing("between");
+    return false;
+  }
   const auto names = section.texts("between");
   if (!names) return false;
   if (names->size() != 2) {
@@ -157,7 +162,7 @@ void read_contacts(const Section& root, SceneDraft& draft) {
     // A pair whose law has mistakes still counts as one that has a law: one report is enough.
     const auto earlier =
         std::find_if(rules.begin(), rules.end(), [&](const auto& r) { return covers(r, rule); });
-    if (earlier != rules.end())
+    if (earlier != rules.end() && !rule.by_choice())
       section.report(
           "between",
           fmt::format("never used: {} matches all of its pairs, and the first holds; remove one, or put "

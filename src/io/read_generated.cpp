@@ -160,7 +160,7 @@ std::optional<FillWish> read_wish(const Section& section, const SceneDraft& draf
   if (!fill || !density || !sizes || !region || !seed) return std::nullopt;
   wish.sizes = *sizes;
   wish.region = *region;
-  wish.seed = static_cast<std::uint64_t>(*seed + draft.repetition.value_or(0));
+  wish.seed = static_cast<std::uint64_t>(*seed + draft.repetition);
   return wish;
 }
 

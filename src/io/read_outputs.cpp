@@ -32,7 +32,7 @@ void check_balls(const Section& section, const std::vector<std::int64_t>& balls,
   for (const std::int64_t ball : balls) {
     if (!seen.insert(ball).second)
       section.report("balls", fmt::format("ball {} stands there twice; name it once", ball));
-    else if (draft.balls_complete && ball >= count)
+    else if (draft.balls_complete && draft.materials_to_come.empty() && ball >= count)
       section.report("balls",
                      fmt::format("there is no ball {}; the {} of the scene are numbered from 0 to {}", ball,
                                  count, count - 1));

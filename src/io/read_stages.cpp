@@ -48,7 +48,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 6> not_to_se
 std::vector<std::string> read_set(const Section& stage) {
   std::vector<std::string> settings;
   for (const FreeKey& free : stage.free_keys("set")) {
-    const std::string_view first = std::string_view(free.key).substr(0, free.key.find_first_of(".["));
+    std::string plain = free.key;  // as a path of an override is read
+    std::erase_if(plain, [](char c) { return c == ' ' || c == ']'; });
+    const std::string_view first = std::string_view(plain).substr(0, plain.find_first_of(".["));
     const auto forbidden = std::find_if(not_to_set.begin(), not_to_set.end(),
                                         [&](const auto& entry) { return entry.first == first; });
     if (forbidden != not_to_set.end())
@@ -109,19 +111,20 @@ model::BodyChange read_change(const Section& section, const SceneDraft& draft,
                            .spin = section.vector("spin"),
                            .force = section.vector("force"),
                            .moment = section.vector("moment"),
-                           .damping = section.quantity("damping"),
-                           .radius_by = section.quantity("radius_by"),
-                           .over = section.quantity("over").value_or(0)};
+                           .damping = section.quantity("damping")};
+  if (const auto growth = section.section("growth")) {
+    growth->check_keys();
+    change.growth = growth->quantity("factor");
+    change.over = growth->quantity("over").value_or(0);
+  }
   if (section.has("group"))
     if ((change.of.group = section.text("group"))) check_group(section, *change.of.group, groups);
   constexpr std::array<std::string_view, 8> changes{"fix",   "free",   "velocity", "spin",
-                                                    "force", "moment", "damping",  "radius_by"};
+                                                    "force", "moment", "damping",  "growth"};
   if (std::none_of(changes.begin(), changes.end(), [&](std::string_view key) { return section.has(key); }))
     section.report("changes nothing; add e.g. \"fix: [x]\" or \"velocity: [0, 0, 1]\", or remove the entry");
   if ((change.fix.bits() & change.free.bits()) != 0)
     section.report("free", "a component cannot be fixed and freed at once; name it once");
-  if (section.has("over") && !section.has("radius_by"))
-    section.report("over", "says how long a radius grows; add e.g. \"radius_by: 1.05\", or remove it");
   if (draft.planar) check_stays_in_plane(section, change, draft.planar->normal);
   return change;
 }
@@ -141,10 +144,9 @@ model::ContactChoice read_choice(const Section& section, const SceneDraft& draft
   if (!choice.take.empty() && draft.contacts_complete &&
       std::find(names.begin(), names.end(), choice.take) == names.end())
     section.report(
-        "take",
-        fmt::format("no entry of contacts has the name \"{}\"{}; add one, e.g. \"- {{name: {}, between: "
-                    "[any, any], law: linear, kn: 1e5 N/m}}\"",
-                    choice.take, did_you_mean(choice.take, names), choice.take));
+        "take", fmt::format("no entry of contacts has the name \"{}\"{}; add one, e.g. \"- {{name: {}, law: "
+                            "linear, kn: 1e5 N/m}}\"",
+                            choice.take, did_you_mean(choice.take, names), choice.take));
   return choice;
 }
 
@@ -194,6 +196,10 @@ model::Stage read_stage(const Section& section, SceneDraft& draft, std::vector<s
   if (section.has("run") && section.has("relax"))
     section.report("relax", "not beside run; make it a stage of its own");
   stage.save = read_save(section);
+  constexpr std::array<std::string_view, 8> does{"set",      "balls", "groups", "bodies",
+                                                 "contacts", "run",   "relax",  "save"};
+  if (std::none_of(does.begin(), does.end(), [&](std::string_view key) { return section.has(key); }))
+    section.report("does nothing; add e.g. \"run: {steps: 1000}\", or remove the entry");
   return stage;
 }
 
@@ -223,8 +229,9 @@ void check_stages(const Section& root, const SceneDraft& draft, std::string_view
     added.scene.cell = draft.scene.cell;
     added.planar = draft.planar;
     added.folder = draft.folder;
-    added.repetition = 0;
     read_ball_entries(section.sections("balls"), added);
+    if (draft.planar && draft.scene.bodies.size() > 0)
+      check_planar_balls(added, draft.scene.bodies.position[0][draft.planar->normal], section.diagnostics());
     const std::vector<std::string>& settings = draft.scene.stages[k].settings;
     if (settings.empty()) continue;
     try {

@@ -1,3 +1,4 @@
+#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/moving_walls.hpp"
 #include "eigengrain/assembly/surroundings.hpp"
@@ -254,6 +255,8 @@ void read_progress(const h5::File& hdf5, assembly::State& state) {
     else
       value = static_cast<Value>(hdf5.integer(layout::progress, name));
   });
+  if (state.progress.stage < 0 || state.progress.repetition < 0)
+    throw h5::Error("a stage of a negative number");
 }
 
 bool scaling_changed(const model::Scene& stored, const model::Scene& now) {
@@ -270,14 +273,18 @@ void begin_other_masses(assembly::State& state) {
   state.dt = 0;
   state.next_dt = 0;
   const auto stop = [](Vec3& v, std::uint8_t fixed) { v -= model::free_part(v, fixed); };
+  const assembly::Fluctuation fluctuation(state.model.cell);  // the flow of a cell goes on
+  const auto stop_at = [&](Vec3& v, const Vec3& x, std::uint8_t fixed) {
+    v -= model::free_part(fluctuation.of(v, x), fixed);
+  };
   for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
-    stop(bodies.velocity[i], bodies.fixed[i].translation());
+    stop_at(bodies.velocity[i], bodies.position[i], bodies.fixed[i].translation());
   for (std::size_t i = 0; i < bodies.spin.size(); ++i) stop(bodies.spin[i], bodies.fixed[i].rotation());
   model::Clumps& clumps = bodies.clumps;
   for (std::int32_t c = 0; c < clumps.size(); ++c) {
     const auto k = static_cast<std::size_t>(c);
     const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(clumps.holder(c))];
-    stop(clumps.velocity[k], fixed.translation());
+    stop_at(clumps.velocity[k], clumps.position[k], fixed.translation());
     stop(clumps.spin[k], fixed.rotation());
     clumps.angular_momentum[k] = model::angular_momentum(clumps, c, clumps.spin[k]);
   }

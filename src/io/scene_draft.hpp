@@ -46,8 +46,8 @@ struct SceneDraft {
   bool walls_complete = true;                ///< nor a wall
   bool measures_complete = true;             ///< nor a region
   std::set<std::int32_t> materials_to_come;  ///< of balls that stages add
-  /// Where the balls that are read come into a scene that has some: the repetition of their stage.
-  std::optional<std::int64_t> repetition;
+  bool wraps = true;            ///< balls into the cell, which may have moved since when they come in later
+  std::int64_t repetition = 0;  ///< of the stage whose balls are read: adds to their seeds
 };
 
 /// One function for each section of the scene; each reads its own keys only. Those that use the materials
@@ -105,6 +105,9 @@ void check_placement(const Section& root, const SceneDraft& draft);
 
 /// What a cell that deforms cannot have: meshes, tables of the energy ledger, motion across a plane.
 void check_deformation(const Section& root, const SceneDraft& draft);
+
+/// The same of balls that come into a planar scene, whose plane is there along its normal (m).
+void check_planar_balls(const SceneDraft& draft, double plane, Diagnostics& diagnostics);
 
 /// Whether a planar scene is one: balls in one plane, nothing that drives them out of it.
 void check_planar(const Section& root, const SceneDraft& draft);

@@ -264,7 +264,7 @@ std::vector<KeyDescription> ball_keys() {
        .range = {.low = 0},
        .fallback = "0",
        .example = "0.5 s",
-       .description = "when it begins, counted from the start of the scene"},
+       .description = "when it begins, counted from the start of the scene, or from when the balls come in"},
   };
 }
 

@@ -77,9 +77,9 @@ std::vector<KeyDescription> contact_keys() {
                       "that can meet needs one"},
       {.path = "contacts[].between",
        .kind = texts,
-       .required = true,
        .example = "[any, any]",
-       .description = "two names of materials, in any order; `any` stands for each of them"},
+       .description =
+           "two names of materials, in any order; `any` stands for each of them; needed without `name`"},
       {.path = "contacts[].law",
        .kind = word,
        .required = true,

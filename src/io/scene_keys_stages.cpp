@@ -39,7 +39,7 @@ std::vector<KeyDescription> group_keys(const std::string& section, const std::st
        .kind = text,
        .required = true,
        .example = "lid",
-       .description = "by which `bodies` of a stage ask for it"}};
+       .description = "by which `bodies` and `contacts` of a stage ask for it"}};
   append(keys, selection_keys(section + "[]"));
   return keys;
 }
@@ -96,17 +96,22 @@ std::vector<KeyDescription> body_keys() {
                  .range = {.low = 0, .high = 1, .high_allowed = false},
                  .example = "0.2",
                  .description = "local damping of their own from now on"},
-                {.path = "stages[].bodies[].radius_by",
+                {.path = "stages[].bodies[].growth",
+                 .kind = section,
+                 .example = "{factor: 1.05, over: 0.1 s}",
+                 .description = "the radius changes at the same density; not of clumps"},
+                {.path = "stages[].bodies[].growth.factor",
                  .kind = quantity,
                  .range = positive_range,
-                 .example = "1.01",
-                 .description = "factor of the radius, at the same density; not of clumps"},
-                {.path = "stages[].bodies[].over",
+                 .required = true,
+                 .example = "1.05",
+                 .description = "radius at the end over that at the start"},
+                {.path = "stages[].bodies[].growth.over",
                  .kind = quantity,
                  .unit = "s",
                  .range = positive_range,
                  .example = "0.1 s",
-                 .description = "the time in which `radius_by` is reached; absent: at once"}});
+                 .description = "how long it takes; absent: at once"}});
   return keys;
 }
 
@@ -119,7 +124,8 @@ std::vector<KeyDescription> choice_keys() {
        .description =
            "contacts that act now and the entry of `contacts` that they take: those of which all keys mean "
            "both "
-           "balls, or, at a wall, the ball; they go back when they have opened, and bonds are left alone"},
+           "balls, or, at a wall, the ball; they go back when they have opened, and bonds and contacts with "
+           "polygons and meshes are left alone"},
       {.path = "stages[].contacts[].take",
        .kind = text,
        .required = true,

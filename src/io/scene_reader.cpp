@@ -71,6 +71,22 @@ void make_paths_of_wall_absolute(Node& wall, const std::filesystem::path& folder
   }
 }
 
+void make_paths_of_stage_absolute(Node& stage, const std::filesystem::path& folder) {
+  if (Node* balls = stage.find(balls_key))
+    for (Node& entry : balls->children) make_absolute(entry.find("file"), folder);
+  Node* set = stage.find("set");
+  if (set == nullptr) return;
+  for (Node& child : set->children) {
+    const std::string_view key = child.key;
+    const bool names_file = key.ends_with(".motion_file") || key.ends_with(".mesh.file");
+    make_absolute(key.starts_with("walls") && names_file ? &child : nullptr, folder);
+    if (key == "walls")
+      for (Node& wall : child.children) make_paths_of_wall_absolute(wall, folder);
+    else if (key.starts_with("walls"))
+      make_paths_of_wall_absolute(child, folder);
+  }
+}
+
 /// The document with the paths of files that walls and stages name made absolute: a state, which keeps it,
 /// may stand in any folder.
 std::string document_for_states(const Document& document, const std::filesystem::path& folder) {
@@ -81,9 +97,7 @@ std::string document_for_states(const Document& document, const std::filesystem:
     if (section.key == "walls")
       for (Node& wall : section.children) make_paths_of_wall_absolute(wall, folder);
     if (section.key == "stages")
-      for (Node& stage : section.children)
-        if (Node* balls = stage.find(balls_key))
-          for (Node& entry : balls->children) make_absolute(entry.find("file"), folder);
+      for (Node& stage : section.children) make_paths_of_stage_absolute(stage, folder);
   }
   return document_text(root, balls_key);
 }
@@ -170,6 +184,7 @@ model::Bodies read_added_balls(const model::Scene& settings, std::int64_t stage,
   const Document document = read_document(settings.document, settings.name, {}, "--set", diagnostics);
   SceneDraft draft;
   draft.repetition = repetition;
+  draft.wraps = false;
   const Section root(document.root, "", "", diagnostics);
   read_materials(root, draft);
   read_periodic(root, draft);

@@ -31,6 +31,16 @@ std::vector<T> gather(const std::vector<T>& column, std::span<const std::int32_t
   return result;
 }
 
+/// Appends rows to a column that may be absent on either side; `rest` stands for what is not there.
+template <class T>
+void append(std::vector<T>& column, std::size_t rows, const std::vector<T>& more, std::size_t more_rows,
+            const T& rest) {
+  if (column.empty() && more.empty()) return;
+  column.resize(rows, rest);
+  column.insert(column.end(), more.begin(), more.end());
+  column.resize(rows + more_rows, rest);
+}
+
 /// The clumps whose balls are elsewhere now. Clumps and the order of their balls stay.
 Clumps with_rows_moved(const Clumps& clumps, std::span<const std::int32_t> order) {
   Clumps result = clumps;
@@ -128,6 +138,32 @@ Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order) {
           .ramp = gather(bodies.ramp, order),
           .mass_factor = gather(bodies.mass_factor, order),
           .clumps = with_rows_moved(bodies.clumps, order)};
+}
+
+void append_rows(Bodies& bodies, const Bodies& more) {
+  const std::size_t rows = bodies.position.size();
+  const std::size_t added = more.position.size();
+  const auto every = [](auto& column, const auto& values) {
+    column.insert(column.end(), values.begin(), values.end());
+  };
+  every(bodies.position, more.position);
+  every(bodies.radius, more.radius);
+  every(bodies.mass, more.mass);
+  every(bodies.inertia, more.inertia);
+  every(bodies.material, more.material);
+  every(bodies.fixed, more.fixed);
+  bodies.identity.resize(rows + added);
+  std::iota(bodies.identity.begin() + static_cast<std::ptrdiff_t>(rows), bodies.identity.end(),
+            static_cast<std::int64_t>(rows));
+  const Vec3 none = Vec3::Zero();
+  append(bodies.velocity, rows, more.velocity, added, none);
+  append(bodies.spin, rows, more.spin, added, none);
+  append(bodies.orientation, rows, more.orientation, added, Quat(Quat::Identity()));
+  append(bodies.applied_force, rows, more.applied_force, added, none);
+  append(bodies.applied_moment, rows, more.applied_moment, added, none);
+  append(bodies.damping, rows, more.damping, added, Bodies::scene_damping);
+  append(bodies.ramp, rows, more.ramp, added, RadiusRamp());
+  append(bodies.mass_factor, rows, more.mass_factor, added, 1.0);
 }
 
 void sort_along_curve(Bodies& bodies) {

@@ -44,6 +44,11 @@ def periodic(scene):
             f"walls:\n  - {{plane: {{point: [0, 0, 0], normal: [0, 0, 1]}}, material: grain}}\n{damping}")
 
 
+def sheared(scene):
+    """The same, and the cell deforms."""
+    return periodic(scene).replace("axes: [x, y]", "axes: [x, y], velocity_gradient: [[0, 0.01, 0], [0, 0, 0], [0, 0, 0]]")
+
+
 def parts(width):
     corners = f"[[-1, -1, 0], [{width + 1}, -1, 0], [{width + 1}, {width + 1}, 0], [-1, {width + 1}, 0]]"
     return [
@@ -59,7 +64,15 @@ def parts(width):
         Part("parallel bonds at the touching contacts",
              ["contacts.0.bond={kind: parallel, kn: 1e9 Pa/m, ks: 5e8 Pa/m, radius: 0.5}"]),
         Part("contact bonds at the touching contacts", ["contacts.0.bond={kind: contact}"]),
+        Part("Hertz contacts", ["contacts.0={between: [any, any], law: hertz, young: 0.3 GPa, poisson: 0.2, friction: 0.5}"]),
+        Part("hysteretic springs", [
+            "contacts.0={between: [any, any], law: hysteretic, kn: 1e5, restitution: 0.8, ks: 5e4, friction: 0.5}"]),
+        Part("a force on each ball", ["balls.0.force=[1e-9, 0, 0]"]),
+        Part("a local damping of their own", ["balls.0.damping=0.7"]),
+        Part("radii that grow", ["balls.0.growth={factor: 1.0000001, over: 1 s}"]),
+        Part("scaled masses", ["timestep={policy: bound}", f"mass_scaling={{form: differential, dt: {DT}}}"]),
         Part("a cell that repeats in x and y", edit=periodic),
+        Part("the same cell in shear", edit=sheared),
         Part("a polygon as floor", edit=floor(f"polygon: {{corners: {corners}}}")),
         Part("a floor that moves", edit=floor(
             "plane: {point: [0, 0, 0], normal: [0, 0, 1]}, velocity: [0.01, 0, 0]")),

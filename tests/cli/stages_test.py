@@ -124,7 +124,7 @@ class Stages(ProgramTest):
 groups: [{name: top, box: {min: [0, 0, 15 mm], max: [1, 1, 1]}}]
 stages:
   - {bodies: [{group: top, fix: z, velocity: [0, 0, 2]}], run: {time: 10 ms}, save: up.h5}
-  - {bodies: [{group: top, free: z}, {box: {min: [0, 0, 0], max: [1, 1, 10.1 mm]}, radius_by: 0.5}],
+  - {bodies: [{group: top, free: z}, {box: {min: [0, 0, 0], max: [1, 1, 10.1 mm]}, growth: {factor: 0.5}}],
      set: {damping.local: 0}, run: {time: 10 ms}}
 """)
         text, report = self.succeed("check", scene)
@@ -209,7 +209,7 @@ stages:
     def test_a_group_that_nobody_is_in_is_an_error(self):
         text = self.fail_with("check", self.scene(BOX + LAYER + "groups: [{name: far, sphere: {centre: [9, 9, 9], "
                                                   "radius: 1}}]\n"))
-        self.assertIn('group "far": no ball is meant', text)
+        self.assertIn('groups, "far": no ball is meant', text)
 
 
 if __name__ == "__main__":

@@ -123,7 +123,8 @@ std::vector<std::string> scenes_with_room() {
     const std::string lid = "[{name: lid" + shape + "}]";
     scenes.push_back(rest + "groups: " + lid + "\n");
     scenes.push_back(rest + "stages: [{groups: " + lid + "}]\n");
-    scenes.push_back(rest + "groups: [{name: lid}]\nstages: [{bodies: [{radius_by: 1" + shape + "}]}]\n");
+    scenes.push_back(rest + "groups: [{name: lid}]\nstages: [{bodies: [{growth: {factor: 1}" + shape +
+                     "}]}]\n");
     scenes.push_back(
         materials + ball + plane +
         "contacts: [{name: soft, between: [any, any], law: linear, kn: 1}, {between: [any, any], law: "

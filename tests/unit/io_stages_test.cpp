@@ -28,17 +28,18 @@ std::vector<std::string> reported(const std::string& keys) {
 
 TEST(Stages, AreReadInTheirOrder) {
   const model::Scene scene = read_scene_text(
-      scene_with("groups: [{name: all of them}, {name: first, balls: 0, material: grain}]\n"
-                 "stages:\n"
-                 "  - {name: settle, run: {steps: 500, until: {unbalanced: 1e-4, kinetic: 1 uJ}}}\n"
-                 "  - set: {contacts.0.friction: 0.2, gravity: [0, 0, -9.81]}\n"
-                 "    repeat: 3\n"
-                 "    balls: [{fill: random, fraction: 0.1, radius: 5 mm, material: grain,\n"
-                 "             box: {min: [0, 0, 0.2], max: [0.1, 0.1, 0.3]}}]\n"
-                 "    groups: [{name: lid, box: {min: [0, 0, 0], max: [1, 1, 1]}}]\n"
-                 "    bodies: [{group: lid, fix: [x, wy], free: z, velocity: [0, 0, 1], radius_by: 1.1}]\n"
-                 "    relax: {tolerance: 1e-8}\n"
-                 "    save: end.h5\n"),
+      scene_with(
+          "groups: [{name: all of them}, {name: first, balls: 0, material: grain}]\n"
+          "stages:\n"
+          "  - {name: settle, run: {steps: 500, until: {unbalanced: 1e-4, kinetic: 1 uJ}}}\n"
+          "  - set: {contacts.0.friction: 0.2, gravity: [0, 0, -9.81]}\n"
+          "    repeat: 3\n"
+          "    balls: [{fill: random, fraction: 0.1, radius: 5 mm, material: grain,\n"
+          "             box: {min: [0, 0, 0.2], max: [0.1, 0.1, 0.3]}}]\n"
+          "    groups: [{name: lid, box: {min: [0, 0, 0], max: [1, 1, 1]}}]\n"
+          "    bodies: [{group: lid, fix: [x, wy], free: z, velocity: [0, 0, 1], growth: {factor: 1.1}}]\n"
+          "    relax: {tolerance: 1e-8}\n"
+          "    save: end.h5\n"),
       ".");
   ASSERT_EQ(scene.groups.size(), 2U);
   EXPECT_THAT(*scene.groups[1].of.balls, ElementsAre(0));
@@ -59,7 +60,7 @@ TEST(Stages, AreReadInTheirOrder) {
   EXPECT_EQ(next.bodies[0].fix.bits(), 0b010001);
   EXPECT_EQ(next.bodies[0].free.bits(), 0b000100);
   EXPECT_EQ(next.bodies[0].velocity, Vec3(0, 0, 1));
-  EXPECT_EQ(next.bodies[0].radius_by, 1.1);
+  EXPECT_EQ(next.bodies[0].growth, 1.1);
   EXPECT_FALSE(next.run.any());
   EXPECT_EQ(next.relax->tolerance, 1e-8);
   EXPECT_EQ(next.relax->max_steps, 1000000);
@@ -99,12 +100,13 @@ TEST(Stages, MistakesInThem) {
               UnorderedElementsAre(HasSubstr("stages[0].set: balls: balls come in with `balls` of the stage"),
                                    HasSubstr("stages[0].set: stages.0.name: "),
                                    HasSubstr("stages[0].set: run.steps: a stage has a `run` of its own")));
+  EXPECT_THAT(reported("stages: [{name: a}]"), ElementsAre(HasSubstr("stages[0]: does nothing; add e.g.")));
   EXPECT_THAT(reported("stages: [{run: {until: {}}}]"),
               ElementsAre(HasSubstr("stages[0].run.until: says nothing; add e.g. \"unbalanced: 1e-5\"")));
   EXPECT_THAT(reported("stages: [{run: {until: {wall_force: {wall: lid, at_least: 3 N}}}}]"),
               ElementsAre(HasSubstr("there is no wall \"lid\", as the scene has none")));
-  EXPECT_THAT(reported("stages: [{bodies: [{radius_by: 0}]}]"),
-              ElementsAre(HasSubstr("radius_by: \"0\" is out of range")));
+  EXPECT_THAT(reported("stages: [{bodies: [{growth: {factor: 0}}]}]"),
+              ElementsAre(HasSubstr("growth.factor: \"0\" is out of range")));
 }
 
 TEST(Stages, WhatTheySetIsTriedOutBeforeAnythingRuns) {

@@ -29,11 +29,11 @@ struct CellStep {
   Vec3 carried(const Vec3& listed) const { return origin + carry * (listed - origin); }
 };
 
-/// Where nothing of this is to be computed.
+/// For the motion of bodies where the cell rests: nothing of this is computed.
 struct CellAtRest {
   static constexpr bool moves = false;
 };
-/// As the motion of bodies asks for it.
+/// For the motion of bodies where the cell moves.
 struct MovingCell {
   static constexpr bool moves = true;
   const CellStep& step;

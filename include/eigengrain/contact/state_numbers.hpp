@@ -7,6 +7,7 @@
 #include <cstring>
 #include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 /// The state of a contact as named numbers, for those who carry it to a file or to another law.

@@ -113,6 +113,10 @@ double set_radii(Bodies& bodies, double time);
 /// Whether some radius changes between two times, s.
 bool radii_change(const Bodies& bodies, double begin, double end);
 
+/// Inertial over true mass of a body.
+inline double mass_factor_of(const Bodies& bodies, std::size_t row) {
+  return bodies.mass_factor.empty() ? 1.0 : bodies.mass_factor[row];
+}
 /// What a body sets against forces and moments: its mass and moment of inertia, scaled where the scene scales
 /// masses. kg, kg m².
 inline double inertial_mass(const Bodies& bodies, std::size_t row) {
@@ -165,6 +169,10 @@ inline const Vec3& centre_of(const Bodies& bodies, std::int32_t row) {
 /// Puts the bodies in the order of a space-filling (Morton) curve, so that neighbours in space are
 /// neighbours in memory. Depends on positions and identities only.
 void sort_along_curve(Bodies& bodies);
+
+/// Adds balls that are no pieces of clumps behind all rows, numbered on; columns that only one side has are
+/// filled with what stands for no need.
+void append_rows(Bodies& bodies, const Bodies& more);
 
 /// Row r of the result is row order[r] of the bodies given.
 Bodies reordered(const Bodies& bodies, std::span<const std::int32_t> order);

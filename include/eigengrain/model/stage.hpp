@@ -40,15 +40,15 @@ struct RelaxChoice {
 /// meant.
 struct BodyChange {
   Selection of{};
-  FixedComponents fix{};              ///< in addition to those that are fixed
-  FixedComponents free{};             ///< no longer fixed
-  std::optional<Vec3> velocity{};     ///< m/s
-  std::optional<Vec3> spin{};         ///< rad/s
-  std::optional<Vec3> force{};        ///< applied from now on, N
-  std::optional<Vec3> moment{};       ///< applied from now on, N m
-  std::optional<double> damping{};    ///< α of their own
-  std::optional<double> radius_by{};  ///< factor of the radius at constant density; not of clumps
-  double over = 0;                    ///< the time that the radius takes for it; 0: at once, s
+  FixedComponents fix{};            ///< in addition to those that are fixed
+  FixedComponents free{};           ///< no longer fixed
+  std::optional<Vec3> velocity{};   ///< m/s
+  std::optional<Vec3> spin{};       ///< rad/s
+  std::optional<Vec3> force{};      ///< applied from now on, N
+  std::optional<Vec3> moment{};     ///< applied from now on, N m
+  std::optional<double> damping{};  ///< α of their own
+  std::optional<double> growth{};   ///< factor of the radius at constant density; not of clumps
+  double over = 0;                  ///< the time that the radius takes for it; 0: at once, s
 };
 
 /// Contacts that act now, and the entry of `contacts` whose law they take while they go on acting.
