@@ -43,8 +43,11 @@ bool overlaps_a_wall(const Model& model, const Vec3& x, double radius) {
   return overlaps;
 }
 
-/// [new balls] whether each keeps clear of the balls and walls of the model.
-std::vector<bool> free_places(const Model& model, const model::Bodies& balls) {
+/// [new balls] whether each keeps clear of the balls and walls of the model; in a cell that has moved, for
+/// which they were not made, of those before it too.
+std::vector<bool> free_places(const State& state, const model::Bodies& balls) {
+  const Model& model = state.model;
+  const bool moved = model.cell.edges != state.settings.cell.edges;
   std::vector<Vec3> centres = model.bodies.position;
   std::vector<double> radii = model.bodies.radius;
   const auto there = static_cast<std::int32_t>(centres.size());
@@ -54,8 +57,7 @@ std::vector<bool> free_places(const Model& model, const model::Bodies& balls) {
   for (std::size_t i = 0; i < free.size(); ++i)
     free[i] = !overlaps_a_wall(model, model.cell.wrapped(balls.position[i]), balls.radius[i]);
   for (const search::CandidatePair& pair : search::candidate_pairs(centres, radii, model.cell))
-    if (pair.b >= there && (pair.a < there || !model.cell.orthogonal()))
-      free[static_cast<std::size_t>(pair.b - there)] = false;
+    if (pair.b >= there && (pair.a < there || moved)) free[static_cast<std::size_t>(pair.b - there)] = false;
   return free;
 }
 
@@ -74,7 +76,7 @@ void set_back(State& state, std::size_t row) {
 }  // namespace
 
 Added add_balls(State& state, const model::Bodies& balls) {
-  const std::vector<bool> free = free_places(state.model, balls);
+  const std::vector<bool> free = free_places(state, balls);
   std::vector<std::int32_t> order;
   for (std::int32_t row = 0; row < balls.size(); ++row)
     if (free[static_cast<std::size_t>(row)]) order.push_back(row);

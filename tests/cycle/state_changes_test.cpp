@@ -237,6 +237,20 @@ TEST(StateChanges, BallsComeInWhereThereIsRoom) {
   EXPECT_EQ(cycle.state().force.size(), 3U);
 }
 
+// Balls that were made for a cell which is smaller now may have come to overlap through its faces.
+TEST(StateChanges, BallsComeInWithoutOverlapsWhereTheCellHasMoved) {
+  SceneBuilder builder({.kn = 10, .tension = false});
+  builder.ball({5, 5, 5});
+  builder.scene().cell = model::PeriodicCell::box(Vec3::Zero(), Vec3::Constant(20), {true, true, true});
+  State state = cycle::start(builder.scene());
+  SceneBuilder more;
+  more.ball({1, 1, 1}).ball({15.5, 1, 1});  // 5.5 apart through the face, or 0.5 in a cell of 15
+  State before = state;
+  EXPECT_EQ(assembly::add_balls(before, more.scene().bodies).balls, 2);
+  state.model.cell.edges = Vec3::Constant(15).asDiagonal();
+  EXPECT_EQ(assembly::add_balls(state, more.scene().bodies).balls, 1);
+}
+
 /// Two balls on a floor, beside each other, with an entry `soft` for contacts that are chosen.
 SceneBuilder balls_on_floor() {
   SceneBuilder builder({.kn = 10, .ks = 5, .tension = false});
