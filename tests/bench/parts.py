@@ -46,7 +46,8 @@ def periodic(scene):
 
 def sheared(scene):
     """The same, and the cell deforms."""
-    return periodic(scene).replace("axes: [x, y]", "axes: [x, y], velocity_gradient: [[0, 0.01, 0], [0, 0, 0], [0, 0, 0]]")
+    return periodic(scene).replace(
+        "axes: [x, y]", "axes: [x, y], velocity_gradient: [[0, 0.01, 0], [0, 0, 0], [0, 0, 0]]")
 
 
 def parts(width):
@@ -64,7 +65,8 @@ def parts(width):
         Part("parallel bonds at the touching contacts",
              ["contacts.0.bond={kind: parallel, kn: 1e9 Pa/m, ks: 5e8 Pa/m, radius: 0.5}"]),
         Part("contact bonds at the touching contacts", ["contacts.0.bond={kind: contact}"]),
-        Part("Hertz contacts", ["contacts.0={between: [any, any], law: hertz, young: 0.3 GPa, poisson: 0.2, friction: 0.5}"]),
+        Part("Hertz contacts", ["contacts.0={between: [any, any], law: hertz, effective_young: 0.156 GPa, "
+                                "effective_shear: 0.035 GPa, friction: 0.5}"]),
         Part("hysteretic springs", [
             "contacts.0={between: [any, any], law: hysteretic, kn: 1e5, restitution: 0.8, ks: 5e4, friction: 0.5}"]),
         Part("a force on each ball", ["balls.0.force=[1e-9, 0, 0]"]),
