@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs what Eigengrain needs on Debian 12, as root or through sudo: the packages of packages.txt.
-# Does nothing, and needs no rights, where all of them are there already.
+# Installs what Eigengrain needs on Debian 12, as root or through sudo: the packages of packages.txt, and of other such
+# lists: dependencies.sh [LIST...]. Does nothing, and needs no rights, where all of them are there already.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
-mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$here/packages.txt")
+mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$here/packages.txt" "$@")
 
 missing=()
 for package in "${packages[@]}"; do

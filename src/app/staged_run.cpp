@@ -88,6 +88,7 @@ void StagedRun::begin() {
   const model::Stage stage = this->stage();  // settings may be replaced
   State& state = input_.state;
   const std::int64_t index = state.progress.stage;
+  const bool kept_ledger = state.ledger.has_value();
   if (!stage.settings.empty()) {
     // As it would be by hand: saved, and read with other settings.
     io::write_state(state, state_file_);
@@ -110,6 +111,8 @@ void StagedRun::begin() {
         assembly::choose_contacts(state, stage.contacts[k], fmt::format("stages[{}].contacts[{}]", index, k));
     fmt::print("{}: {} by {}\n", title(), counted(chosen, "contact", "contacts"), stage.contacts[k].take);
   }
+  if (kept_ledger && !state.ledger)
+    fmt::print("{}: the scene has another energy now: the ledger begins anew\n", title());
   if (!stage.run.any() && !stage.relax && !state.breaks.empty()) {  // else these write them
     broken_ += std::ssize(state.breaks);
     RunOutputs(input_).write_breaks(std::exchange(state.breaks, {}));

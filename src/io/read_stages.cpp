@@ -203,6 +203,30 @@ model::Stage read_stage(const Section& section, SceneDraft& draft, std::vector<s
   return stage;
 }
 
+bool same_columns(const model::History& l, const model::History& r) {
+  const auto names = [](const model::History& table) {
+    std::vector<std::string> result;
+    for (const model::Region& region : table.measures) result.push_back(region.name);
+    return result;
+  };
+  return l.energies == r.energies && l.unbalanced == r.unbalanced && l.walls == r.walls &&
+         l.wall_moments == r.wall_moments && l.wall_positions == r.wall_positions && l.ledger == r.ledger &&
+         l.balls == r.balls && names(l) == names(r);
+}
+
+/// A table goes on through the stages, so it keeps its columns.
+void report_changed_tables(const Section& stage, const model::Scene& before, const model::Scene& now) {
+  for (const model::History& table : now.histories) {
+    const auto same = std::find_if(before.histories.begin(), before.histories.end(),
+                                   [&](const model::History& other) { return other.file == table.file; });
+    if (same != before.histories.end() && !same_columns(*same, table))
+      stage.report("set",
+                   fmt::format("the table \"{}\" would go on with other columns; give the new one another "
+                               "name",
+                               table.file));
+  }
+}
+
 }  // namespace
 
 void read_stages(const Section& root, SceneDraft& draft) {
@@ -239,6 +263,7 @@ void check_stages(const Section& root, const SceneDraft& draft, std::string_view
           read_settings_text(text, draft.folder, fmt::format("{}, {}", draft.scene.name, section.path()),
                              settings, draft.scene.bodies.material, section.path() + ".set");
       if (const auto problem = forbidden_change(before, now)) section.report("set", *problem);
+      report_changed_tables(section, before, now);
       text = now.document;
       before = std::move(now);
     } catch (const InputError& error) {

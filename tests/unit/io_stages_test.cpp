@@ -121,6 +121,9 @@ TEST(Stages, WhatTheySetIsTriedOutBeforeAnythingRuns) {
       reported("stages:\n"
                "  - {set: {walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]}}\n"),
       ElementsAre(HasSubstr("walls: 1 planes; the state has 0")));
+  EXPECT_THAT(
+      reported("histories: [{file: a.csv, of: [energies]}]\nstages: [{set: {histories.0.of: [unbalanced]}}]"),
+      ElementsAre(HasSubstr("stages[0].set: the table \"a.csv\" would go on with other columns")));
   EXPECT_THAT(reported("stages:\n"
                        "  - {set: {measures: [{name: all}]}}\n"
                        "  - {set: {histories: [{file: a.csv, measures: [all]}]}}\n"),
