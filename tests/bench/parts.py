@@ -44,6 +44,20 @@ def periodic(scene):
             f"walls:\n  - {{plane: {{point: [0, 0, 0], normal: [0, 0, 1]}}, material: grain}}\n{damping}")
 
 
+def clumped(scene):
+    """Each ball as a clump of one."""
+    before, _, rest = scene.partition("balls:")
+    after = rest[rest.index("walls:"):]
+    packing = rest.split("file: ")[1].split(",")[0].split("}")[0].strip()
+    entries = []
+    for line in Path(packing).read_text().splitlines():
+        if line.strip() and not line.startswith("#"):
+            x, y, z, r = line.split()
+            entries.append(f"  - {{balls: [{{at: [0, 0, 0], radius: {r}}}], material: grain, "
+                           f"instances: [{{position: [{x}, {y}, {z}]}}]}}\n")
+    return f"{before}clumps:\n{''.join(entries)}{after}"
+
+
 def sheared(scene):
     """The same, and the cell deforms."""
     return periodic(scene).replace(
@@ -75,6 +89,7 @@ def parts(width):
         Part("scaled masses", ["timestep={policy: bound}", f"mass_scaling={{form: differential, dt: {DT}}}"]),
         Part("a cell that repeats in x and y", edit=periodic),
         Part("the same cell in shear", edit=sheared),
+        Part("each ball as a clump of one", edit=clumped),
         Part("a polygon as floor", edit=floor(f"polygon: {{corners: {corners}}}")),
         Part("a floor that moves", edit=floor(
             "plane: {point: [0, 0, 0], normal: [0, 0, 1]}, velocity: [0.01, 0, 0]")),
