@@ -13,8 +13,8 @@
 namespace eigengrain::cycle {
 namespace {
 
-template <class Work, class Frame>
-void move_clump(assembly::State& state, std::int32_t clump, double duration, double dt, const Frame& frame,
+template <class Work, class Cell>
+void move_clump(assembly::State& state, std::int32_t clump, double duration, double dt, const Cell& cell,
                 Work& work) {
   model::Bodies& bodies = state.model.bodies;
   model::Clumps& clumps = bodies.clumps;
@@ -27,7 +27,7 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
 
   Vec3& velocity = clumps.velocity[c];
   kick(velocity, contacts.force + own.load(holder), own.mass(holder), duration, damping, fixed.translation(),
-       work, FlowAt<Frame>(frame, clumps.position[c]));
+       work, FlowAt<Cell>(cell, clumps.position[c]));
   work.gravity(clumps.mass[c] * state.model.gravity, velocity);
   clumps.position[c] += dt * velocity;
 
@@ -66,8 +66,8 @@ void move_clump(assembly::State& state, std::int32_t clump, double duration, dou
 
 }  // namespace
 
-template <class Work, class Frame>
-void move_clumps(assembly::State& state, double duration, double dt, const Frame& frame) {
+template <class Work, class Cell>
+void move_clumps(assembly::State& state, double duration, double dt, const Cell& cell) {
   constexpr std::int64_t chunk_size = 256;
   const std::int64_t clumps = state.model.bodies.clumps.size();
   std::vector<assembly::EnergyIntegrals> works(
@@ -75,14 +75,14 @@ void move_clumps(assembly::State& state, double duration, double dt, const Frame
   for_chunks(clumps, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     Work work(state.dt, dt);
     for (auto clump = static_cast<std::int32_t>(begin); clump < end; ++clump)
-      move_clump(state, clump, duration, dt, frame, work);
+      move_clump(state, clump, duration, dt, cell, work);
     if constexpr (Work::counts) works[static_cast<std::size_t>(chunk)] = work.sum;
   });
   for (const assembly::EnergyIntegrals& work : works) state.ledger->integrals += work;
 }
 
 template void move_clumps<NoWork>(assembly::State&, double, double, const assembly::CellAtRest&);
-template void move_clumps<NoWork>(assembly::State&, double, double, const assembly::MovingCell&);
+template void move_clumps<NoWork>(assembly::State&, double, double, const assembly::CellStep&);
 template void move_clumps<KickWork>(assembly::State&, double, double, const assembly::CellAtRest&);
 
 }  // namespace eigengrain::cycle

@@ -85,14 +85,14 @@ Cycle::Cycle(State state, TimestepPolicy policy)
   EIGENGRAIN_ASSERT(!state_.ledger || !state_.model.cell.deforms());  // refused by begin_ledger
 }
 
-template <class Work, class Properties, class Frame>
-double Cycle::move(double duration, double dt, const Frame& frame) {
+template <class Work, class Properties, class Cell>
+double Cycle::move(double duration, double dt, const Cell& cell) {
   constexpr std::int64_t chunk_size = 1024;
   model::Bodies& bodies = state_.model.bodies;
   const Properties own(state_.model);
   const Vec3 no_spin = Vec3::Zero();
   const bool clumps = !bodies.clumps.empty();
-  if (clumps) move_clumps<Work>(state_, duration, dt, frame);
+  if (clumps) move_clumps<Work>(state_, duration, dt, cell);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
   std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);
@@ -105,7 +105,7 @@ double Cycle::move(double duration, double dt, const Frame& frame) {
         const double damping = own.damping(i);
         const Vec3 force = state_.force[i] + own.load(i);
         kick(bodies.velocity[i], force, own.mass(i), duration, damping, fixed.translation(), work,
-             FlowAt<Frame>(frame, bodies.position[i]));
+             FlowAt<Cell>(cell, bodies.position[i]));
         work.gravity(bodies.mass[i] * state_.model.gravity, bodies.velocity[i]);
         bodies.position[i] += dt * bodies.velocity[i];
         if (state_.turns())
@@ -114,8 +114,8 @@ double Cycle::move(double duration, double dt, const Frame& frame) {
         own.count_applied(i, bodies.velocity[i], state_.turns() ? bodies.spin[i] : no_spin, work);
       }
       double squared = 0;
-      if constexpr (Frame::moves)
-        squared = (bodies.position[i] - frame.step.carried(state_.list.position[i])).squaredNorm();
+      if constexpr (Cell::moves)
+        squared = (bodies.position[i] - cell.carried(state_.list.position[i])).squaredNorm();
       else
         squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
@@ -136,14 +136,14 @@ void Cycle::list_anew() {
   forces_ = assembly::ContactForceSum(state_.model, state_.turns());
 }
 
-template <class Frame>
-double Cycle::move(double duration, double dt, const Frame& frame) {
+template <class Cell>
+double Cycle::move(double duration, double dt, const Cell& cell) {
   const bool own = EachItsOwn::needed(state_.model.bodies);
-  if constexpr (!Frame::moves)  // a ledger does not know the work of a cell that moves
+  if constexpr (!Cell::moves)  // a ledger does not know the work of a cell that moves
     if (state_.ledger)
-      return own ? move<KickWork, EachItsOwn>(duration, dt, frame)
-                 : move<KickWork, AllAlike>(duration, dt, frame);
-  return own ? move<NoWork, EachItsOwn>(duration, dt, frame) : move<NoWork, AllAlike>(duration, dt, frame);
+      return own ? move<KickWork, EachItsOwn>(duration, dt, cell)
+                 : move<KickWork, AllAlike>(duration, dt, cell);
+  return own ? move<NoWork, EachItsOwn>(duration, dt, cell) : move<NoWork, AllAlike>(duration, dt, cell);
 }
 
 void Cycle::choose_timestep() {
@@ -170,8 +170,8 @@ void Cycle::step() {
   double way = 0;
   double room = half_skin;  // for bodies while the list holds
   if (deforms) {
-    const assembly::CellStep cell(state_, dt);
-    way = move(duration, dt, assembly::MovingCell{cell});
+    const assembly::CellStep cell = assembly::move_cell(state_, dt);
+    way = move(duration, dt, cell);
     room = cell.margin;
   } else {
     way = move(duration, dt, assembly::CellAtRest{});

@@ -55,14 +55,14 @@ struct Flow {
 };
 
 /// NoFlow or Flow, by what is known of the cell.
-template <class Frame>
+template <class Cell>
 struct FlowAt : NoFlow {
-  FlowAt(const Frame& /*frame*/, const Vec3& /*position*/) {}
+  FlowAt(const Cell& /*cell*/, const Vec3& /*position*/) {}
 };
 template <>
-struct FlowAt<assembly::MovingCell> : Flow {
-  FlowAt(const assembly::MovingCell& frame, const Vec3& position)
-      : Flow{frame.step.flow(position), frame.step.gained(position)} {}
+struct FlowAt<assembly::CellStep> : Flow {
+  FlowAt(const assembly::CellStep& cell, const Vec3& position)
+      : Flow{cell.flow(position), cell.gained(position)} {}
 };
 
 /// Changes the free components of a velocity by the damped force of its body. In a flow the damping resists

@@ -79,6 +79,7 @@ Input ExplicitRun::take_input() {
 }
 
 void ExplicitRun::go() {
+  if (const std::string warning = warning_of(verdict_); !warning.empty()) fmt::print(stderr, "{}\n", warning);
   note_interrupts();
   outputs_.write_breaks(take_breaks());
   outputs_.write_due(state());

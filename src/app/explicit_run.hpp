@@ -15,24 +15,35 @@
 
 namespace eigengrain::app {
 
+/// What the cycle did in a call of the program.
+struct CycleWork {
+  std::int64_t steps = 0;
+  double seconds = 0;       ///< of the cycle alone
+  std::int64_t broken = 0;  ///< bonds
+
+  CycleWork& operator+=(const CycleWork& other) {
+    steps += other.steps;
+    seconds += other.seconds;
+    broken += other.broken;
+    return *this;
+  }
+};
+
 /// One run of the explicit cycle, from an input to its goal, with all that it writes on the way.
 class ExplicitRun {
  public:
   explicit ExplicitRun(Input input);
 
-  /// Ends at the goal or at an interrupt; throws SolverError where the run blows up.
+  /// Warns of a step that is not safe. Ends at the goal or at an interrupt; throws SolverError where the run
+  /// blows up.
   void go();
 
   const assembly::State& state() const { return cycle_.state(); }
   /// The input for what follows, moved out; the run is over.
   Input take_input();
-  /// Of the step that the run began with.
-  const StepVerdict& verdict() const { return verdict_; }
   const Goal& goal() const { return goal_; }
   const RunOutputs& outputs() const { return outputs_; }
-  std::int64_t steps() const { return state().step - first_step_; }  ///< of this call
-  double seconds() const { return seconds_; }                        ///< of the cycle alone
-  std::int64_t broken() const { return broken_; }                    ///< bonds, in this call
+  CycleWork work() const { return {state().step - first_step_, seconds_, broken_}; }
 
  private:
   std::vector<assembly::BondBreak> take_breaks();

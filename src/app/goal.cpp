@@ -12,17 +12,6 @@
 #include <limits>
 
 namespace eigengrain::app {
-namespace {
-
-std::size_t find_wall(const assembly::Model& model, const std::string& name) {
-  const std::vector<std::string> names = assembly::wall_names(model);
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw InputError(fmt::format("until: there is no wall \"{}\"", name));
-  return static_cast<std::size_t>(found - names.begin());
-}
-
-}  // namespace
-
 Goal::Goal(const assembly::State& state) : run_(state.settings.run) {
   if (!state.settings.stages.empty()) {
     run_ = state.settings.stages[static_cast<std::size_t>(state.progress.stage)].run;
@@ -34,7 +23,8 @@ Goal::Goal(const assembly::State& state) : run_(state.settings.run) {
         "the scene does not say how far to run; add run: {steps: 10000} to it, or --set run.steps=10000");
   if (run_.steps) last_step_ = first_step_ + *run_.steps;
   if (run_.time) end_ = start_ + *run_.time;
-  if (run_.wall_force) wall_ = find_wall(state.model, run_.wall_force->wall);
+  if (run_.wall_force)
+    wall_ = static_cast<std::size_t>(assembly::find_wall(state.model, run_.wall_force->wall, "until"));
 }
 
 void Goal::look(const assembly::State& state) {

@@ -114,7 +114,7 @@ void StagedRun::begin() {
   if (kept_ledger && !state.ledger)
     fmt::print("{}: the scene has another energy now: the ledger begins anew\n", title());
   if (!stage.run.any() && !stage.relax && !state.breaks.empty()) {  // else these write them
-    broken_ += std::ssize(state.breaks);
+    work_.broken += std::ssize(state.breaks);
     RunOutputs(input_).write_breaks(std::exchange(state.breaks, {}));
   }
   state.progress.begun = true;
@@ -124,27 +124,22 @@ void StagedRun::begin() {
 
 void StagedRun::run() {
   ExplicitRun run(std::move(input_));
-  if (const std::string warning = warning_of(run.verdict()); !warning.empty())
-    fmt::print(stderr, "{}\n", warning);
   run.go();
-  steps_ += run.steps();
-  seconds_ += run.seconds();
-  broken_ += run.broken();
+  const CycleWork work = run.work();
+  work_ += work;
   const Goal goal = run.goal();
-  const std::int64_t steps = run.steps();
-  const double seconds = run.seconds();
   input_ = run.take_input();
   const assembly::Balance balance = assembly::balance_of(state());
   nlohmann::ordered_json entry{{"stage", state().progress.stage},
                                {"name", stage().name},
                                {"does", "run"},
-                               {"steps", steps},
+                               {"steps", work.steps},
                                {"time", state().time},
                                {"met", goal.reached(state()) && !goal.missed()}};
   add_balance(entry, balance);
   report_.push_back(std::move(entry));
-  fmt::print("{}: {} in {}, t = {:.6g} s{}\n  {}\n", title(), counted(steps, "step", "steps"),
-             duration_text(seconds), state().time,
+  fmt::print("{}: {} in {}, t = {:.6g} s{}\n  {}\n", title(), counted(work.steps, "step", "steps"),
+             duration_text(work.seconds), state().time,
              goal.missed() && interrupted() == 0 ? "; " + goal.text_of_missed() : "", balance_text(balance));
 }
 
@@ -153,7 +148,7 @@ void StagedRun::relax() {
   RunOutputs outputs(input_);
   const relaxation::RelaxResult result =
       relax_with_reports(input_.state, stage().relax->tolerance, stage().relax->max_steps);
-  broken_ += std::ssize(input_.state.breaks);
+  work_.broken += std::ssize(input_.state.breaks);
   outputs.write_breaks(std::exchange(input_.state.breaks, {}));
   outputs.save(state());
   nlohmann::ordered_json entry{{"stage", state().progress.stage},

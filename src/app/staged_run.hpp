@@ -1,10 +1,10 @@
 #pragma once
 
+#include "explicit_run.hpp"
 #include "input.hpp"
 
 #include <nlohmann/json.hpp>
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -25,9 +25,7 @@ class StagedRun {
   const std::filesystem::path& state_file() const { return state_file_; }
   /// One entry a stage, and repetition, that was done.
   const nlohmann::ordered_json& report() const { return report_; }
-  std::int64_t steps() const { return steps_; }
-  double seconds() const { return seconds_; }  ///< of the cycle alone
-  std::int64_t broken() const { return broken_; }
+  const CycleWork& work() const { return work_; }
 
  private:
   bool in_hand() const;
@@ -41,9 +39,7 @@ class StagedRun {
   Input input_;
   std::filesystem::path state_file_;
   nlohmann::ordered_json report_ = nlohmann::ordered_json::array();
-  std::int64_t steps_ = 0;
-  double seconds_ = 0;
-  std::int64_t broken_ = 0;
+  CycleWork work_;
 };
 
 }  // namespace eigengrain::app

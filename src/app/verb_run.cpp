@@ -18,14 +18,7 @@ namespace {
 
 using assembly::State;
 
-/// What the cycle did in this call.
-struct Work {
-  std::int64_t steps = 0;
-  double seconds = 0;
-  std::int64_t broken = 0;  ///< bonds
-};
-
-nlohmann::ordered_json to_json(const Work& work, const State& state, double rate) {
+nlohmann::ordered_json to_json(const CycleWork& work, const State& state, double rate) {
   nlohmann::ordered_json report{{"steps", work.steps},         {"step", state.step},
                                 {"time", state.time},          {"dt", state.dt},
                                 {"seconds", work.seconds},     {"particle_steps_per_second", rate},
@@ -39,7 +32,7 @@ nlohmann::ordered_json to_json(const Work& work, const State& state, double rate
 }
 
 /// What run and its stages end with.
-void conclude(const Work& work, const State& state, const std::filesystem::path& state_file,
+void conclude(const CycleWork& work, const State& state, const std::filesystem::path& state_file,
               const nlohmann::ordered_json* stages, const Options& options) {
   const double rate = work.seconds > 0 ? static_cast<double>(work.steps) *
                                              static_cast<double>(state.model.bodies.size()) / work.seconds
@@ -63,13 +56,10 @@ void conclude(const Work& work, const State& state, const std::filesystem::path&
 
 void run_once(Input input, const Options& options) {
   ExplicitRun run(std::move(input));
-  if (const std::string warning = warning_of(run.verdict()); !warning.empty())
-    fmt::print(stderr, "{}\n", warning);
   run.go();
-  conclude({run.steps(), run.seconds(), run.broken()}, run.state(), run.outputs().state_file(), nullptr,
-           options);
+  conclude(run.work(), run.state(), run.outputs().state_file(), nullptr, options);
   if (run.goal().missed()) fmt::print("{} in that time\n", run.goal().text_of_missed());
-  if (run.steps() == 0 && !run.goal().missed())
+  if (run.work().steps == 0 && !run.goal().missed())
     fmt::print("nothing to do: what the scene runs to is reached; --set run.steps={} would go on\n",
                run.state().step + 10000);
 }
@@ -80,7 +70,7 @@ void run_stages(Input input, const Options& options) {
     fmt::print("all stages are done; --set \"stages=[]\" --set run.steps={} would go on\n",
                run.state().step + 10000);
   run.go();
-  conclude({run.steps(), run.seconds(), run.broken()}, run.state(), run.state_file(), &run.report(), options);
+  conclude(run.work(), run.state(), run.state_file(), &run.report(), options);
 }
 
 }  // namespace

@@ -22,19 +22,23 @@ double margin_of(const Mat3& carry, double skin, double largest_radius) {
 
 }  // namespace
 
-CellStep::CellStep(State& state, double dt) : origin(state.model.cell.origin) {
+CellStep move_cell(State& state, double dt) {
   model::PeriodicCell& cell = state.model.cell;
   model::PeriodicCell listed = cell;
   listed.edges = state.list.edges;
   const Mat3 inverse = cell.inverse();
   const Mat3 rate = mean_gradient(cell.velocity_gradient, dt) * cell.edges;
-  behind = cell.rate * inverse;
-  gain = (rate - cell.rate) * inverse;
+  CellStep step{.origin = cell.origin,
+                .behind = cell.rate * inverse,
+                .gain = (rate - cell.rate) * inverse,
+                .carry = Mat3::Identity(),
+                .margin = 0};
   cell.rate = rate;
   cell.edges += dt * rate;
-  carry = cell.basis() * listed.inverse();
+  step.carry = cell.basis() * listed.inverse();
   const std::vector<double>& radius = state.model.bodies.radius;
-  margin = margin_of(carry, state.list.skin, *std::max_element(radius.begin(), radius.end()));
+  step.margin = margin_of(step.carry, state.list.skin, *std::max_element(radius.begin(), radius.end()));
+  return step;
 }
 
 Mat3 mean_gradient(const Mat3& velocity_gradient, double dt) {

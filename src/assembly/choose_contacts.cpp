@@ -42,11 +42,7 @@ class Choice {
     for (const std::int32_t row : selected(model_.bodies, state.groups, choice.of, where))
       selected_[static_cast<std::size_t>(row)] = 1;
     if (!choice.wall) return;
-    const std::vector<std::string> names = wall_names(model_);
-    const auto found = std::find(names.begin(), names.end(), *choice.wall);
-    if (found == names.end())
-      throw InputError(fmt::format("{}: there is no wall \"{}\"", where, *choice.wall));
-    wall_ = static_cast<std::int32_t>(found - names.begin());
+    wall_ = find_wall(model_, *choice.wall, where);
     if (static_cast<std::size_t>(*wall_) >= model_.walls.size())
       throw InputError(fmt::format(
           "{}: {} is a surface of triangles, whose contacts keep the entry of their materials; name a plane",

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 
 namespace eigengrain::assembly {
@@ -37,6 +38,13 @@ std::vector<std::string> wall_names(const Model& model) {
   for (const model::Plane& wall : model.walls) names.push_back(wall.name);
   for (const model::Surface& surface : model.surfaces) names.push_back(surface.name);
   return names;
+}
+
+std::int32_t find_wall(const Model& model, const std::string& name, const std::string& where) {
+  const std::vector<std::string> names = wall_names(model);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw InputError(fmt::format("{}: there is no wall \"{}\"", where, name));
+  return static_cast<std::int32_t>(found - names.begin());
 }
 
 std::vector<Vec3> wall_centres(const Model& model) {

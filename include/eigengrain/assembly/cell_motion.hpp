@@ -14,8 +14,7 @@ struct State;
 ///   v₊ = v₋ + (forces) + gain (x - origin)         gain = (rate₊ - rate₋) H⁻¹
 ///   local damping by the sign of v₋ - behind (x - origin)        behind = rate₋ H⁻¹
 struct CellStep {
-  /// Moves the cell of a state by a step from its time on.
-  CellStep(State& state, double dt);
+  static constexpr bool moves = true;
 
   Vec3 origin;    ///< m
   Mat3 behind;    ///< gradient of the flow at the end of the step before, 1/s
@@ -29,15 +28,13 @@ struct CellStep {
   Vec3 carried(const Vec3& listed) const { return origin + carry * (listed - origin); }
 };
 
-/// For the motion of bodies where the cell rests: nothing of this is computed.
+/// In its place where the cell rests: nothing of this is computed.
 struct CellAtRest {
   static constexpr bool moves = false;
 };
-/// For the motion of bodies where the cell moves.
-struct MovingCell {
-  static constexpr bool moves = true;
-  const CellStep& step;
-};
+
+/// Moves the cell of a state by a step from its time on.
+CellStep move_cell(State& state, double dt);
 
 /// (exp(L Δt) - 1)/Δt: with it a step is H₊ = H + Δt rate₊, rate₊ = this H, without the digits that a
 /// difference of H₊ and H would lose. By its power series, after halving Δt until that is short.

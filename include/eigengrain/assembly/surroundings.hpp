@@ -5,6 +5,7 @@
 #include "eigengrain/contact/facet_choice.hpp"
 #include "eigengrain/model/scene.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ void set_surroundings(Model& model, const model::Scene& scene);
 
 /// Names of all walls: planes, then surfaces.
 std::vector<std::string> wall_names(const Model& model);
+
+/// The number of the wall of a name. Throws InputError, beginning with `where`, if there is none.
+std::int32_t find_wall(const Model& model, const std::string& name, const std::string& where);
 
 /// Where the centres of all walls are, m.
 std::vector<Vec3> wall_centres(const Model& model);

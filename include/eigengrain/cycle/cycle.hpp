@@ -67,10 +67,10 @@ class Cycle {
   /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
   /// made, in a cell that moves from where that took them, m². By what the bodies have of their own, whether
   /// a ledger is kept, and whether the cell moves.
-  template <class Frame>
-  double move(double duration, double dt, const Frame& frame);
-  template <class Work, class Properties, class Frame>
-  double move(double duration, double dt, const Frame& frame);
+  template <class Cell>
+  double move(double duration, double dt, const Cell& cell);
+  template <class Work, class Properties, class Cell>
+  double move(double duration, double dt, const Cell& cell);
   void list_anew();
   void choose_timestep();
 
