@@ -54,7 +54,8 @@ ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
                          {"dt", number(e.dt)},
                          {"ratio_to_true", number(e.ratio_to_true)},
                          {"safe", e.safe},
-                         {"proven", e.proven},
+                         {"claim", timestep::name_of(e.claim)},
+                         {"source", e.source},
                          {"seconds", e.seconds},
                          {"products", e.products}});
   return {{"bodies", c.bodies},
@@ -114,7 +115,8 @@ void print(const assembly::State& state, const Comparison& c, const PolicyStep& 
              fmt::format("residual {:.1e}", c.truth.residual), c.truth.seconds, c.truth.products);
   for (const Estimate& e : c.estimates)
     fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", e.name, e.dt, e.ratio_to_true,
-               !e.safe ? "UNSAFE" : (e.proven ? "safe (proven)" : "safe here"), e.seconds, e.products);
+               !e.safe ? "UNSAFE" : (e.claim == timestep::Claim::proven ? "safe (proven)" : "safe here"),
+               e.seconds, e.products);
   fmt::print("{:<20} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit,
              c.truth.limit / c.truth.dt, damping_text(state.model));
   print_policy(policy, c);

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/timestep/estimates.hpp"
 #include "eigengrain/timestep/truth.hpp"
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,7 +14,8 @@ namespace eigengrain::timestep {
 /// An estimate of the undamped critical timestep, before any safety factor, judged against the truth.
 struct Estimate {
   std::string name;
-  bool proven = false;       ///< whether theory proves it safe, not only this scene
+  std::string source;  ///< paper, equation or program
+  Claim claim = Claim::none;
   double dt = 0;             ///< s
   double ratio_to_true = 0;  ///< dt over Truth::dt
   bool safe = false;         ///< whether it does not exceed the truth in this scene
