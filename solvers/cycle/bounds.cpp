@@ -3,6 +3,8 @@
 #include "eigengrain/base/largest_eigenvalue.hpp"
 #include "eigengrain/base/parallel.hpp"
 
+#include "body_blocks.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -15,12 +17,6 @@ using assembly::LinearSystem;
 using contact::ContactElement;
 using contact::no_body;
 
-/// Bound of the relative error of a computed block eigenvalue: a sum over `contacts` positive semidefinite
-/// blocks, each of which takes some ten operations. It keeps the bound on the safe side.
-double rounding(std::int64_t contacts) {
-  return 1e-12 + 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(contacts);
-}
-
 /// Diagonal of M_i^-½ of each body, zero where the component is fixed or does not exist.
 std::vector<Vec6> scale_of_bodies(const LinearSystem& system) {
   const assembly::Unknowns& unknowns = system.unknowns;
@@ -30,16 +26,6 @@ std::vector<Vec6> scale_of_bodies(const LinearSystem& system) {
     result[unknowns.body(block)].segment<3>(unknowns.is_rotation(block) ? 3 : 0) =
         Eigen::Map<const Vec3>(&scale[std::size_t{3} * block]);
   return result;
-}
-
-/// mean + √5 deviation of the six eigenvalues, from trace and norm: no eigenvalue is larger (Wolkowicz and
-/// Styan, Linear Algebra Appl. 29:471, 1980). The variance of a nearly isotropic block is lost to
-/// cancellation, so what cancellation can hide is added to it.
-double eigenvalue_bound(const Mat6& s) {
-  constexpr double hidden = 64 * std::numeric_limits<double>::epsilon();
-  const double mean = s.trace() / 6;
-  const double square = s.squaredNorm() / 6;
-  return mean + std::sqrt(5 * (std::max(0.0, square - mean * mean) + hidden * square));
 }
 
 /// The larger of both; not a number if b is not one.
@@ -104,33 +90,13 @@ double diagonal_estimate(const LinearSystem& system) {
 }
 
 BlockBound::BlockBound(const LinearSystem& system)
-    : system_(system), scale_(scale_of_bodies(system)), weight_(scale_.size(), 1.0) {
-  std::vector<std::int32_t> body_of_end;
-  body_of_end.reserve(2 * system.elements.size());
-  for (const ContactElement& e : system.elements) {
-    body_of_end.push_back(e.a);
-    // A body that touches its own image has the contact once, as a whole.
-    body_of_end.push_back(e.a == e.b ? no_body : e.b);
-  }
-  ends_ = group_by_row(system.unknowns.bodies(), body_of_end);
-}
+    : blocks_(std::make_unique<BodyBlocks>(system)),
+      weight_(static_cast<std::size_t>(blocks_->bodies()), 1.0) {}
+BlockBound::~BlockBound() = default;
 
-Mat6 BlockBound::block(std::int32_t body) const {
-  const auto moves = [&](std::int32_t other) { return other != no_body && !scale_[other].isZero(0); };
-  Mat6 sum = Mat6::Zero();
-  for (const std::int32_t end : ends_.links(body)) {
-    const ContactElement& element = system_.elements[end / 2];
-    if (element.a == element.b) {
-      sum += contact::self_block(element);
-      continue;
-    }
-    const bool first = end % 2 == 0;
-    const std::int32_t other = first ? element.b : element.a;
-    const double factor = moves(other) ? 1.0 + weight_[other] / weight_[body] : 1.0;
-    sum += factor * contact::end_block(element, first ? element.lever_a : element.lever_b);
-  }
-  if (system_.unknowns.axes(body) != nullptr) sum = system_.unknowns.in_own_axes(body, body, sum);
-  return scale_[body].asDiagonal() * sum * scale_[body].asDiagonal();
+double BlockBound::eigenvalue(std::int32_t body) const {
+  return largest_eigenvalue(blocks_->block(body, weight_)) *
+         (1 + rounding_of_block(std::ssize(blocks_->ends(body))));
 }
 
 double BlockBound::timestep() const {
@@ -139,12 +105,9 @@ double BlockBound::timestep() const {
   std::vector<double> largest_of_chunk(static_cast<std::size_t>((bodies + chunk_size - 1) / chunk_size), 0.0);
   for_chunks(bodies, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
     double& largest = largest_of_chunk[chunk];
-    for (auto body = static_cast<std::int32_t>(begin); body < end; ++body) {
-      const Mat6 s = block(body);
+    for (auto body = static_cast<std::int32_t>(begin); body < end; ++body)
       // Few bodies can hold the largest eigenvalue; the others need none.
-      if (!(eigenvalue_bound(s) <= largest))
-        largest = larger(largest, largest_eigenvalue(s) * (1 + rounding(std::ssize(ends_.links(body)))));
-    }
+      if (!(blocks_->bound(body, weight_) <= largest)) largest = larger(largest, eigenvalue(body));
   });
   double largest = 0;
   for (const double lambda : largest_of_chunk) largest = larger(largest, lambda);
@@ -153,17 +116,15 @@ double BlockBound::timestep() const {
 
 std::vector<double> BlockBound::eigenvalues() const {
   std::vector<double> lambda(weight_.size());
-  for_each_index(static_cast<std::int64_t>(lambda.size()), [&](std::int64_t i) {
-    const auto body = static_cast<std::int32_t>(i);
-    lambda[i] = largest_eigenvalue(block(body)) * (1 + rounding(std::ssize(ends_.links(body))));
-  });
+  for_each_index(static_cast<std::int64_t>(lambda.size()),
+                 [&](std::int64_t body) { lambda[body] = eigenvalue(static_cast<std::int32_t>(body)); });
   return lambda;
 }
 
 void BlockBound::sweep() {
   std::vector<double> lambda(weight_.size());
   for_each_index(static_cast<std::int64_t>(lambda.size()), [&](std::int64_t body) {
-    lambda[body] = largest_eigenvalue(block(static_cast<std::int32_t>(body)));
+    lambda[body] = largest_eigenvalue(blocks_->block(static_cast<std::int32_t>(body), weight_));
   });
   // d_i <- d_i λ_i. A body whose block is zero moves nothing; its weight must only stay positive.
   double largest = 0;

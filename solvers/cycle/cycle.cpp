@@ -44,10 +44,6 @@ double work_on_walls(const std::vector<assembly::WallLoad>& before,
   return work;
 }
 
-/// A step chosen anew is taken where it is shorter or longer by more than this: a step that changes with
-/// every contact costs accuracy and gains nothing.
-constexpr double worth_a_change = 1.05;
-
 /// While radii change the step is asked for this often, and when they have come to their end: by then masses
 /// are others.
 constexpr std::int64_t steps_between_growing = 20;
@@ -81,6 +77,9 @@ Cycle::Cycle(State state, TimestepPolicy policy)
   if (std::ssize(state_.list.position) != state_.model.bodies.size() ||
       state_.list.wall_lever.size() != state_.model.wall_poses.size())
     list_anew();
+  if (state_.settings.timestep.policy != model::TimestepPolicy::tracked || state_.model.cell.deforms() ||
+      (state_.guard && std::ssize(state_.guard->position) != state_.model.bodies.size()))
+    state_.guard.reset();
   if (state_.next_dt == 0) choose_timestep();
   EIGENGRAIN_ASSERT(!state_.ledger || !state_.model.cell.deforms());  // refused by begin_ledger
 }
@@ -94,6 +93,8 @@ double Cycle::move(double duration, double dt, const Cell& cell) {
   const bool clumps = !bodies.clumps.empty();
   if (clumps) move_clumps<Work>(state_, duration, dt, cell);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
+  const Vec3* const from = state_.guard ? state_.guard->position.data() : state_.list.position.data();
+  const double* const rooms = state_.guard ? state_.guard->room.data() : nullptr;
   std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
   std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);
   for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
@@ -115,9 +116,10 @@ double Cycle::move(double duration, double dt, const Cell& cell) {
       }
       double squared = 0;
       if constexpr (Cell::moves)
-        squared = (bodies.position[i] - cell.carried(state_.list.position[i])).squaredNorm();
+        squared = (bodies.position[i] - cell.carried(from[i])).squaredNorm();
       else
-        squared = (bodies.position[i] - state_.list.position[i]).squaredNorm();
+        squared = (bodies.position[i] - from[i]).squaredNorm();
+      if (rooms != nullptr) squared -= rooms[i] * rooms[i];
       // Not a number counts as infinitely far, and the list is renewed until somebody looks.
       if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
     }
@@ -129,6 +131,15 @@ double Cycle::move(double duration, double dt, const Cell& cell) {
   });
   for (const assembly::EnergyIntegrals& work : works) state_.ledger->integrals += work;
   return *std::max_element(farthest.begin(), farthest.end());
+}
+
+bool Cycle::list_is_old() const {
+  const double half_skin = 0.5 * state_.list.skin;
+  if (!(state_.list.wall_way <= half_skin)) return true;
+  for (std::size_t i = 0; i < state_.list.position.size(); ++i)
+    if (!((state_.model.bodies.position[i] - state_.list.position[i]).squaredNorm() <= half_skin * half_skin))
+      return true;
+  return false;
 }
 
 void Cycle::list_anew() {
@@ -154,7 +165,7 @@ void Cycle::choose_timestep() {
         "the timestep policy finds no step ({} s): nothing in the scene resists a motion; give one with "
         "timestep: {{policy: fixed, dt: ...}}",
         chosen));
-  if (chosen < state_.next_dt || chosen > worth_a_change * state_.next_dt) state_.next_dt = chosen;
+  if (chosen < state_.next_dt || chosen > policy_.worth_a_change * state_.next_dt) state_.next_dt = chosen;
 }
 
 void Cycle::step() {
@@ -178,7 +189,15 @@ void Cycle::step() {
   }
   growth.apply();
   room -= state_.list.growth;  // what growth leaves for ways
-  const bool expired = !(room >= 0 && way <= room * room && state_.list.wall_way <= half_skin);
+  bool expired = false;
+  bool left_rooms = false;
+  if (state_.guard) {
+    // While it holds, the list does.
+    left_rooms = !(way <= 0 && state_.list.wall_way <= state_.guard->wall_way);
+    expired = left_rooms && list_is_old();
+  } else {
+    expired = !(room >= 0 && way <= room * room && state_.list.wall_way <= half_skin);
+  }
   if (expired) list_anew();
   growth.count();
 
@@ -205,7 +224,7 @@ void Cycle::step() {
   ++state_.step;
   if (!forces_.broken().empty()) assembly::note_breaks(state_, forces_.broken());
   const auto due = [&](std::int64_t every) { return every > 0 && state_.step % every == 0; };
-  if (expired || due(policy_.every) ||
+  if (expired || left_rooms || due(policy_.every) ||
       (growth.any() && (due(steps_between_growing) || !model::radii_change(state_.model.bodies, state_.time,
                                                                            state_.time + state_.next_dt))))
     choose_timestep();

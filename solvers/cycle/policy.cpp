@@ -6,6 +6,7 @@
 
 #include "first_contact.hpp"
 #include "proven_step.hpp"
+#include "tracked_step.hpp"
 
 #include <algorithm>
 
@@ -45,7 +46,18 @@ TimestepPolicy policy_of(const model::Scene& settings) {
       return {[choice, varies](const assembly::State& state) {
                 return choice.safety * proven_step(state, varies);
               },
-              between_bounds(settings, varies)};
+              choice.every > 0 ? choice.every : between_bounds(settings, varies)};
+    case model::TimestepPolicy::tracked: {
+      const std::int64_t every = choice.every > 0 ? choice.every : steps_between_proofs;
+      return {.dt =
+                  [choice, varies](const assembly::State& state) {
+                    const auto guard = state.guard ? state.guard : track_step(state);
+                    return choice.safety * (guard ? guard->dt : proven_step(state, varies));
+                  },
+              .every = every,
+              .prepare = [](assembly::State& state) { state.guard = track_step(state); },
+              .worth_a_change = 1.0};
+    }
     case model::TimestepPolicy::estimate:
       break;
   }

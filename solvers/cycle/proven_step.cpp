@@ -1,13 +1,21 @@
 #include "proven_step.hpp"
 
 #include "eigengrain/assembly/local_damping.hpp"
-#include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/cycle/step_prover.hpp"
 
 #include "first_contact.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace eigengrain::cycle {
+namespace {
+
+/// A proof ends where steps larger by this can no more be proven: the last percent costs more than all
+/// before.
+constexpr double content = 1.03;
+
+}  // namespace
 
 bool stiffness_varies(const model::Scene& settings) {
   bool varies = false;
@@ -25,10 +33,16 @@ std::vector<std::int32_t> bodies_apart(const assembly::State& state, const assem
   return varies ? assembly::LinearSystem(state.model).unknowns.set_aside() : listed.unknowns.set_aside();
 }
 
+std::vector<double> alike(double damping, const assembly::LinearSystem& system) {
+  if (damping == 0) return {};
+  return std::vector<double>(static_cast<std::size_t>(system.unknowns.bodies()), damping);
+}
+
 double proven_step(const assembly::State& state, bool varies) {
   const assembly::LinearSystem system(state.model, assembly::Listed::all);
   const std::vector<std::int32_t> apart = bodies_apart(state, system, varies);
-  return std::min(damped_block_bound(system, assembly::largest_damping(state.model)),
+  StepProver prover(system, alike(assembly::largest_damping(state.model), system));
+  return std::min(prover.sharpen(std::numeric_limits<double>::infinity(), content),
                   first_contact(state, apart, fastest_approach(state)).bound);
 }
 

@@ -124,6 +124,8 @@ const char* policy_name(model::TimestepPolicy policy) {
       return "fixed";
     case model::TimestepPolicy::bound:
       return "bound";
+    case model::TimestepPolicy::tracked:
+      return "tracked";
     case model::TimestepPolicy::estimate:
       break;
   }

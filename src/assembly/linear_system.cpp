@@ -34,7 +34,8 @@ bool has_dashpots(const Model& model) {
   return found;
 }
 
-std::vector<contact::ContactDamping> contact_damping(const Model& model, Listed which) {
+template <class Which>
+std::vector<contact::ContactDamping> contact_damping(const Model& model, const Which& which) {
   std::vector<contact::ContactDamping> damping;
   if (!has_dashpots(model)) return damping;
   const std::vector<double>& mass = model.bodies.mass;
@@ -65,6 +66,12 @@ LinearSystem with_viscosity(const LinearSystem& system, double mu) {
 }
 
 LinearSystem::LinearSystem(const Model& model, Listed which)
+    : elements(contact_elements(model, which)),
+      damping(contact_damping(model, which)),
+      unknowns(model.bodies, elements),
+      mass(mass_diagonal(model.bodies, unknowns)) {}
+
+LinearSystem::LinearSystem(const Model& model, const WithinRooms& which)
     : elements(contact_elements(model, which)),
       damping(contact_damping(model, which)),
       unknowns(model.bodies, elements),

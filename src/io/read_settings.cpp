@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <optional>
 #include <string>
+#include <system_error>
 
 namespace eigengrain::io {
 
@@ -77,6 +79,24 @@ void read_damping(const Section& root, SceneDraft& draft) {
   draft.scene.local_damping = section->quantity("local").value_or(draft.scene.local_damping);
 }
 
+namespace {
+
+/// Of a step that is proven for what touches.
+constexpr double tracked_safety = 0.98;
+
+/// A number of steps, or zero for "auto".
+std::int64_t read_every(const Section& section) {
+  const std::string given = section.text("every").value_or("auto");
+  if (given == "auto") return 0;
+  std::int64_t steps = 0;
+  const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), steps);
+  if (error == std::errc() && end == given.data() + given.size() && steps > 0) return steps;
+  section.report("every", fmt::format("\"{}\" is neither auto nor a whole number of steps above 0", given));
+  return 0;
+}
+
+}  // namespace
+
 void read_timestep(const Section& root, SceneDraft& draft) {
   const auto section = root.section("timestep");
   if (!section) return;
@@ -91,6 +111,15 @@ void read_timestep(const Section& root, SceneDraft& draft) {
     choice.policy = model::TimestepPolicy::fixed;
   else if (*policy == "bound")
     choice.policy = model::TimestepPolicy::bound;
+  else if (*policy == "tracked") {
+    choice.policy = model::TimestepPolicy::tracked;
+    if (!section->has("safety")) choice.safety = tracked_safety;
+  }
+  if (section->has("every") && (fixed || *policy == "estimate"))
+    section->report(
+        "every", fmt::format("has no meaning with policy {}; remove it, or write policy: tracked", *policy));
+  else
+    choice.every = read_every(*section);
   if (fixed && !section->has("dt")) section->report_missing("dt", ", which policy fixed needs");
   if (!fixed && section->has("dt"))
     section->report(

@@ -237,6 +237,26 @@ void read_ledger(const h5::File& hdf5, assembly::State& state) {
   });
 }
 
+/// A proof of the step goes on only where it is asked for as before.
+void read_guard(const h5::File& hdf5, const model::Scene& stored, assembly::State& state) {
+  const model::TimestepChoice& then = stored.timestep;
+  const model::TimestepChoice& now = state.settings.timestep;
+  if (!hdf5.has(layout::guard) || now.policy != then.policy || now.safety != then.safety) return;
+  assembly::StepGuard& guard = state.guard.emplace();
+  layout::for_each_guard_number(guard, [&](const char* name, auto& value) {
+    if constexpr (std::is_integral_v<std::decay_t<decltype(value)>>)
+      value = hdf5.integer(layout::guard, name);
+    else
+      value = hdf5.number(layout::guard, name);
+  });
+  const std::size_t count = state.model.bodies.position.size();
+  layout::for_each_guard_column(guard, [&](const std::string& path, auto& column) {
+    column = hdf5.read<typename std::decay_t<decltype(column)>::value_type>(path, count);
+  });
+  if (!std::all_of(guard.weight.begin(), guard.weight.end(), [](double d) { return d > 0; }))
+    throw h5::Error("a weight of the proof of the step is not positive");
+}
+
 void read_groups(const h5::File& hdf5, assembly::State& state) {
   for (std::size_t k = 0;; ++k) {
     const std::string path = fmt::format("{}/{}", layout::groups, k);
@@ -321,8 +341,10 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   read_cell(hdf5, stored, file, state);
   read_walls(hdf5, file, state);
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());
-  if (surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings))
-    assembly::renew_list(state, state.list.skin);
+  const bool list_is_old =
+      surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings);
+  if (list_is_old) assembly::renew_list(state, state.list.skin);
+  if (!list_is_old) read_guard(hdf5, stored, state);
   if (scaling_changed(stored, state.settings)) begin_other_masses(state);
   // Friction that comes on lets balls turn that could not before.
   if (state.model.bodies.spin.empty() && !assembly::needs_rotation(stored) &&

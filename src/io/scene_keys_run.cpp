@@ -76,16 +76,26 @@ std::vector<KeyDescription> run_keys() {
       {.path = "timestep.policy",
        .kind = word,
        .fallback = "estimate",
-       .words = {"estimate", "fixed", "bound"},
+       .words = {"estimate", "fixed", "bound", "tracked"},
        .example = "bound",
        .description =
-           "`estimate`: from the stiffness at each body; `bound`: proven to be safe; `fixed`: `dt`"},
+           "`estimate`: from the stiffness at each body; `bound`: proven to be safe for all near pairs; "
+           "`tracked`: proven to be safe for the contacts, close to the true limit, and proven again when "
+           "they "
+           "change; `fixed`: `dt`"},
       {.path = "timestep.safety",
        .kind = quantity,
        .range = {.low = 0, .high = 1, .low_allowed = false},
        .fallback = "0.8",
        .example = "0.8",
-       .description = "fraction of the estimate or bound in use"},
+       .description = "fraction of the estimate or bound in use; `0.98` with policy `tracked`"},
+      {.path = "timestep.every",
+       .kind = text,
+       .fallback = "auto",
+       .example = "200",
+       .description =
+           "steps after which policies `bound` and `tracked` prove a step anew even if nothing asks for "
+           "it; `auto`: 500 with `tracked`, and with `bound` only where near pairs do not say it all"},
       {.path = "timestep.dt",
        .kind = quantity,
        .unit = "s",

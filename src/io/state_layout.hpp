@@ -61,6 +61,7 @@ inline const std::string groups = "/groups";
 inline const std::string progress = "/stages";
 inline const std::string list_position = "/neighbour_list/position";
 inline const std::string list_wall_lever = "/neighbour_list/wall_lever";
+inline const std::string guard = "/step_guard";
 inline const std::string cell = "/cell";
 inline const std::string cell_edges = "/cell/edges";
 inline const std::string cell_rate = "/cell/rate";
@@ -112,6 +113,27 @@ void for_each_number(State& state, const Visit& visit) {
   visit("step", state.step);
   visit("dt", state.dt);
   visit("next_dt", state.next_dt);
+}
+
+/// The numbers of a proof of the step.
+template <class Guard, class Visit>
+void for_each_guard_number(Guard& all, const Visit& visit) {
+  visit("dt", all.dt);
+  visit("wall_way", all.wall_way);
+  visit("step", all.step);
+  visit("reach", all.reach);
+  visit("gain", all.gain);
+  visit("proofs", all.proofs);
+  visit("pause", all.pause);
+  visit("last_pause", all.last_pause);
+}
+
+/// The columns of a proof of the step, with one row a body.
+template <class Guard, class Visit>
+void for_each_guard_column(Guard& all, const Visit& visit) {
+  visit(guard + "/position", all.position);
+  visit(guard + "/room", all.room);
+  visit(guard + "/weight", all.weight);
 }
 
 /// How far the stages have come.

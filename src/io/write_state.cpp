@@ -38,6 +38,7 @@ std::size_t largest_size(const assembly::State& state) {
   layout::for_each_clump_column(state.model.bodies.clumps, [&](const char*, const auto& column) {
     size += (1U << 12U) + column.size() * sizeof(column[0]);
   });
+  if (state.guard) size += (1U << 14U) + (sizeof(Vec3) + 2 * sizeof(double)) * state.guard->position.size();
   for (const model::Group& group : state.groups)
     size += (1U << 14U) + group.balls.size() * sizeof(std::int64_t);
   state.model.contacts.for_each_group([&](const auto& group) {
@@ -174,6 +175,16 @@ void write_stages(const assembly::State& state, h5::File& file) {
   });
 }
 
+/// Only where the step is tracked.
+void write_guard(const assembly::State& state, h5::File& file) {
+  if (!state.guard) return;
+  file.add_group(layout::guard);
+  layout::for_each_guard_number(*state.guard,
+                                [&](const char* name, auto value) { file.set(layout::guard, name, value); });
+  layout::for_each_guard_column(
+      *state.guard, [&](const std::string& path, const auto& column) { file.write(path, column); });
+}
+
 /// A matrix as three rows.
 void write_matrix(const Mat3& matrix, const std::string& path, h5::File& file) {
   const Mat3 rows = matrix.transpose();  // columns are contiguous
@@ -216,6 +227,7 @@ void write_contents(const assembly::State& state, h5::File& file) {
       file.set(layout::ledger, name.c_str(), energy);
     });
   }
+  write_guard(state, file);
   write_stages(state, file);
 }
 

@@ -13,6 +13,7 @@ namespace eigengrain::assembly {
 /// are asked about. It owns what it holds; the model may go.
 struct LinearSystem {
   explicit LinearSystem(const Model& model, Listed which = Listed::acting);
+  LinearSystem(const Model& model, const WithinRooms& which);
 
   std::vector<contact::ContactElement> elements;
   /// [elements] the dashpots of the elements; empty where no contact has any.

@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/bond_break.hpp"
 #include "eigengrain/assembly/ledger.hpp"
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/step_guard.hpp"
 #include "eigengrain/model/scene.hpp"
 
 #include <cstdint>
@@ -41,6 +42,7 @@ struct State {
   double next_dt = 0;                    ///< that the timestep policy chose for the next one, s
   std::vector<BondBreak> breaks{};       ///< bonds that broke, until somebody takes them; not in state files
   std::optional<EnergyLedger> ledger{};  ///< kept only where somebody has begun it (measures/ledger.hpp)
+  std::optional<StepGuard> guard{};      ///< of the step, where it is tracked (policy `tracked`)
   std::vector<model::Group> groups{};    ///< that have been made so far
   model::StageProgress progress{};       ///< where the settings have stages
 

@@ -63,6 +63,10 @@ struct ContactStiffness {
   /// D of the relative rotation: κ_n nnᵀ + κ_s (1 - nnᵀ).
   Mat3 rotation(const Vec3& n) const { return normal_and_shear(n, twist, bending); }
 
+  friend ContactStiffness operator*(double factor, const ContactStiffness& k) {
+    return {factor * k.normal, factor * k.shear, factor * k.twist, factor * k.bending};
+  }
+
  private:
   static Mat3 normal_and_shear(const Vec3& n, double along, double across) {
     return across * Mat3::Identity() + (along - across) * n * n.transpose();

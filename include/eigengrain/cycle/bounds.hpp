@@ -1,14 +1,17 @@
 #pragma once
 
 #include "eigengrain/assembly/linear_system.hpp"
-#include "eigengrain/base/adjacency.hpp"
 
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 /// Cheap estimates of the critical timestep: sums over the contacts of each body, no eigenvalue of the
 /// system. All are before any safety factor, and for the system without local damping where they do not take
 /// it; where nothing moves they are infinite.
 namespace eigengrain::cycle {
+
+class BodyBlocks;
 
 /// Largest stable step of the cycle with local damping α, from that of the undamped cycle (or a bound of it):
 /// dt/√(1 + α). Exact where all bodies have the same α: in the half-cycle in which it opposes the resultant,
@@ -33,6 +36,7 @@ class BlockBound {
  public:
   /// Refers to the system, which must outlive it.
   explicit BlockBound(const assembly::LinearSystem& system);
+  ~BlockBound();
 
   /// The bound with the present weights, s. Rounding is on the safe side. Cost O(contacts).
   double timestep() const;
@@ -43,11 +47,9 @@ class BlockBound {
   void sweep();
 
  private:
-  Mat6 block(std::int32_t body) const;
+  double eigenvalue(std::int32_t body) const;
 
-  const assembly::LinearSystem& system_;
-  Adjacency ends_;  ///< body -> its ends of contacts: 2c is the first of contact c, 2c + 1 the second
-  std::vector<Vec6> scale_;     ///< [bodies] diagonal of M_i^-½, zero where there is no free component
+  std::unique_ptr<BodyBlocks> blocks_;
   std::vector<double> weight_;  ///< [bodies] d
 };
 

@@ -20,6 +20,9 @@ struct TimestepPolicy {
   std::int64_t every = 0;
   /// What is done to the state before it is asked; empty: nothing (see cycle/mass_scaling.hpp).
   std::function<void(assembly::State&)> prepare{};
+  /// A step chosen anew is taken where it is shorter, or longer by this factor: one that changes with every
+  /// contact costs accuracy and gains nothing.
+  double worth_a_change = 1.05;
 };
 
 /// A scene at rest in time: bodies sorted, near pairs listed, forces of the first moment. Velocities are
@@ -71,6 +74,8 @@ class Cycle {
   double move(double duration, double dt, const Cell& cell);
   template <class Work, class Properties, class Cell>
   double move(double duration, double dt, const Cell& cell);
+  /// Whether a body or wall has moved by half the skin since the near list was made.
+  bool list_is_old() const;
   void list_anew();
   void choose_timestep();
 

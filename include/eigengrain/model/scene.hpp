@@ -49,12 +49,13 @@ struct ContactRule {
   }
 };
 
-enum class TimestepPolicy { estimate, fixed, bound };
+enum class TimestepPolicy { estimate, fixed, bound, tracked };
 
 struct TimestepChoice {
   TimestepPolicy policy = TimestepPolicy::estimate;
   double safety = 0.8;       ///< fraction of the estimate or bound in use
   std::optional<double> dt;  ///< s, with policy fixed
+  std::int64_t every = 0;    ///< steps between looks at it; 0: as the policy thinks best
 };
 
 /// Inertial masses that are not the true ones, so that a static solution takes fewer steps (PFC3D 1.7). Only

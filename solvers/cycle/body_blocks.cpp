@@ -1,0 +1,209 @@
+#include "body_blocks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace eigengrain::cycle {
+namespace {
+
+using assembly::LinearSystem;
+using contact::ContactElement;
+using contact::ContactStiffness;
+using contact::no_body;
+
+/// Levers that are along n but for this part count as along n: far less than what rounding_of_block adds.
+constexpr double along_normal = 1e-13;
+
+std::vector<Vec6> scale_of_bodies(const LinearSystem& system, std::span<const double> mass_divisor) {
+  const assembly::Unknowns& unknowns = system.unknowns;
+  const std::vector<double> scale = system.inverse_sqrt_mass();
+  std::vector<Vec6> result(static_cast<std::size_t>(unknowns.bodies()), Vec6::Zero());
+  for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
+    result[unknowns.body(block)].segment<3>(unknowns.is_rotation(block) ? 3 : 0) =
+        Eigen::Map<const Vec3>(&scale[std::size_t{3} * block]);
+  for (std::size_t i = 0; i < mass_divisor.size(); ++i) result[i] *= std::sqrt(mass_divisor[i]);
+  return result;
+}
+
+const Vec3& lever(const ContactElement& element, std::int32_t end) {
+  return end % 2 == 0 ? element.lever_a : element.lever_b;
+}
+
+bool radial(const Vec3& lever, const Vec3& n) {
+  return (lever - lever.dot(n) * n).squaredNorm() <= along_normal * along_normal * lever.squaredNorm();
+}
+
+bool isotropic(const Vec6& scale) {
+  const auto same = [&](int k) { return scale[k] == scale[k + 1] && scale[k] == scale[k + 2]; };
+  return same(0) && same(3);
+}
+
+/// A sum of ends with levers r n:
+///   K_uu = a 1 + Σ..nnᵀ, K_θθ = b 1 + Σ..nnᵀ, K_uθ = -[c]×
+struct RadialSum {
+  double a = 0;
+  double b = 0;
+  Vec3 c = Vec3::Zero();
+  std::array<double, 6> uu{};  ///< xx, yy, zz, xy, xz, yz
+  std::array<double, 6> tt{};
+
+  void add(const ContactElement& element, const Vec3& lever, const ContactStiffness& k, double factor) {
+    const Vec3& n = element.normal;
+    const double r = lever.dot(n);
+    const double shear = factor * k.shear;
+    const double turning = r * r * shear + factor * k.bending;
+    const double along = factor * (k.normal - k.shear);
+    const double twist = factor * k.twist - turning;
+    a += shear;
+    b += turning;
+    c += r * shear * n;
+    const std::array<double, 6> nn{n.x() * n.x(), n.y() * n.y(), n.z() * n.z(),
+                                   n.x() * n.y(), n.x() * n.z(), n.y() * n.z()};
+    for (std::size_t k6 = 0; k6 < 6; ++k6) uu[k6] += along * nn[k6];
+    for (std::size_t k6 = 0; k6 < 6; ++k6) tt[k6] += twist * nn[k6];
+  }
+
+  static Mat3 matrix(double diagonal, const std::array<double, 6>& s) {
+    Mat3 m;
+    m << diagonal + s[0], s[3], s[4], s[3], diagonal + s[1], s[5], s[4], s[5], diagonal + s[2];
+    return m;
+  }
+  Mat6 block() const {
+    const Mat3 skew = cross_matrix(c);
+    Mat6 m;
+    m << matrix(a, uu), -skew, skew, matrix(b, tt);
+    return m;
+  }
+  static double trace(double diagonal, const std::array<double, 6>& s) {
+    return 3 * diagonal + s[0] + s[1] + s[2];
+  }
+  static double square(double diagonal, const std::array<double, 6>& s) {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += (diagonal + s[k]) * (diagonal + s[k]);
+    for (std::size_t k = 3; k < 6; ++k) sum += 2 * s[k] * s[k];
+    return sum;
+  }
+  /// Of the block scaled by 1/m, 1/I.
+  double bound(double per_mass, double per_inertia) const {
+    const double total = per_mass * trace(a, uu) + per_inertia * trace(b, tt);
+    const double norm = per_mass * per_mass * square(a, uu) + 4 * per_mass * per_inertia * c.squaredNorm() +
+                        per_inertia * per_inertia * square(b, tt);
+    return eigenvalue_bound(total, norm);
+  }
+};
+
+/// Any ends.
+struct FullSum {
+  Mat6 sum = Mat6::Zero();
+
+  void add(const ContactElement& element, const Vec3& lever, const ContactStiffness& k, double factor) {
+    ContactElement end = element;
+    end.stiffness = k;
+    sum += factor * contact::end_block(end, lever);
+  }
+  void add_self(const ContactElement& element, const ContactStiffness& k) {
+    ContactElement own = element;
+    own.stiffness = k;
+    sum += contact::self_block(own);
+  }
+  const Mat6& block() const { return sum; }
+};
+
+}  // namespace
+
+double rounding_of_block(std::int64_t contacts) {
+  return 1e-12 + 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(contacts);
+}
+
+double eigenvalue_bound(double trace, double squared_norm) {
+  constexpr double hidden = 64 * std::numeric_limits<double>::epsilon();
+  const double mean = trace / 6;
+  const double square = squared_norm / 6;
+  return mean + std::sqrt(5 * (std::max(0.0, square - mean * mean) + hidden * square));
+}
+
+BodyBlocks::BodyBlocks(const LinearSystem& system, std::span<const double> mass_divisor)
+    : system_(system), scale_(scale_of_bodies(system, mass_divisor)) {
+  moves_.reserve(scale_.size());
+  simple_.reserve(scale_.size());
+  for (const Vec6& scale : scale_) {
+    moves_.push_back(static_cast<char>(!scale.isZero(0)));
+    simple_.push_back(static_cast<char>(isotropic(scale)));
+  }
+  std::vector<std::int32_t> body_of_end;
+  body_of_end.reserve(2 * system.elements.size());
+  for (const ContactElement& e : system.elements) {
+    body_of_end.push_back(e.a);
+    // A body that touches its own image has the contact once, as a whole.
+    body_of_end.push_back(e.a == e.b ? no_body : e.b);
+    if (e.a == e.b || !radial(e.lever_a, e.normal)) simple_[e.a] = 0;
+    if (e.b != no_body && !radial(e.lever_b, e.normal)) simple_[e.b] = 0;
+  }
+  ends_ = group_by_row(system.unknowns.bodies(), body_of_end);
+}
+
+ContactStiffness BodyBlocks::stiffness(std::int32_t contact, double mu) const {
+  ContactStiffness k = system_.elements[static_cast<std::size_t>(contact)].stiffness;
+  if (mu == 0) return k;
+  k.normal += mu * system_.damping[static_cast<std::size_t>(contact)].normal;
+  k.shear += mu * system_.damping[static_cast<std::size_t>(contact)].shear;
+  return k;
+}
+
+template <class Sum>
+Sum BodyBlocks::sum(std::int32_t body, std::span<const double> weight, double mu) const {
+  Sum sum;
+  const double per_own = 1 / weight[body];
+  for (const std::int32_t end : ends_.links(body)) {
+    const ContactElement& element = system_.elements[static_cast<std::size_t>(end / 2)];
+    if constexpr (std::is_same_v<Sum, FullSum>)
+      if (element.a == element.b) {
+        sum.add_self(element, stiffness(end / 2, mu));
+        continue;
+      }
+    const std::int32_t j = other(end);
+    const double factor = j == no_body ? 1.0 : 1.0 + weight[j] * per_own;
+    sum.add(element, lever(element, end), stiffness(end / 2, mu), factor);
+  }
+  return sum;
+}
+
+Mat6 BodyBlocks::scaled(std::int32_t body, const Mat6& block) const {
+  const Vec6& s = scale_[body];
+  if (system_.unknowns.axes(body) == nullptr) return s.asDiagonal() * block * s.asDiagonal();
+  return s.asDiagonal() * system_.unknowns.in_own_axes(body, body, block) * s.asDiagonal();
+}
+
+Mat6 BodyBlocks::block(std::int32_t body, std::span<const double> weight, double mu) const {
+  return scaled(body, simple_[body] != 0 ? sum<RadialSum>(body, weight, mu).block()
+                                         : sum<FullSum>(body, weight, mu).block());
+}
+
+BodyBlocks::Parts BodyBlocks::parts(std::int32_t body, std::span<const double> weight, double mu) const {
+  FullSum own;
+  FullSum others;
+  for (const std::int32_t end : ends_.links(body)) {
+    const ContactElement& element = system_.elements[static_cast<std::size_t>(end / 2)];
+    const ContactStiffness k = stiffness(end / 2, mu);
+    if (element.a == element.b) {
+      own.add_self(element, k);
+      continue;
+    }
+    own.add(element, lever(element, end), k, 1.0);
+    const std::int32_t j = other(end);
+    if (j != no_body) others.add(element, lever(element, end), k, weight[j]);
+  }
+  return {scaled(body, own.block()), scaled(body, others.block())};
+}
+
+double BodyBlocks::bound(std::int32_t body, std::span<const double> weight, double mu) const {
+  if (simple_[body] != 0)
+    return sum<RadialSum>(body, weight, mu)
+        .bound(scale_[body][0] * scale_[body][0], scale_[body][3] * scale_[body][3]);
+  const Mat6 s = block(body, weight, mu);
+  return eigenvalue_bound(s.trace(), s.squaredNorm());
+}
+
+}  // namespace eigengrain::cycle

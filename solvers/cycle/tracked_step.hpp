@@ -1,0 +1,23 @@
+#pragma once
+
+#include "eigengrain/assembly/state.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace eigengrain::cycle {
+
+/// How often a proof is made anew while nothing asks for it, in steps.
+inline constexpr std::int64_t steps_between_proofs = 500;
+
+/// Proves a step of a state as large as the contacts allow that act now, or that can while no body leaves its
+/// room (assembly::StepGuard). Where the state has a guard, what it knows is begun with: its step, the
+/// weights that proved it, and how much room lasted how long. None where a proof of this kind does not pay:
+/// while radii change or the cell deforms, with surfaces, and where nothing touches; then proven_step() is
+/// what holds.
+///
+/// Stiffnesses are those at the deepest that a contact can come to within the rooms, and count for more by
+/// what the angle can add by which the contact can turn within them (docs/theory.md, "Tracking").
+std::optional<assembly::StepGuard> track_step(const assembly::State& state);
+
+}  // namespace eigengrain::cycle

@@ -1,0 +1,145 @@
+// Policy `tracked`: what it keeps over a file, when it looks again, and what it is where proofs of its kind
+// are not made. That it is never above the truth is in tests/verification/tracked_step_test.cpp.
+#include "eigengrain/cycle/policy.hpp"
+#include "eigengrain/io/scene_reader.hpp"
+
+#include "support/motion.hpp"
+#include "support/restart.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace eigengrain::test {
+namespace {
+
+using cycle::Cycle;
+
+model::Scene scene_of(const std::string& more) {
+  return io::read_scene_text(R"(
+gravity: [1, 0, -9.81]
+materials: [{name: grain, density: 2500}]
+contacts: [{between: [grain, grain], law: linear, kn: 1e5, ks: 5e4, friction: 0.5}]
+balls: [{fill: random, fraction: 0.25, radius: 5 mm, box: {min: [0, 0, 0], max: [0.08, 0.08, 0.3]}, seed: 2, material: grain}]
+walls: [{box: {min: [0, 0, 0], max: [0.08, 0.08, 0.3], open: [+z]}, material: grain}]
+damping: {local: 0.5}
+)" + more,
+                             ".", "scene.yaml");
+}
+
+const std::string tracked = "timestep: {policy: tracked}\n";
+
+TEST(Tracked, GoesOnToTheBitFromAFile) {
+  expect_to_continue(scene_of(tracked), 1500, {0, 1, 700});
+}
+
+TEST(Tracked, IsTheSameOnAnyNumberOfThreads) {
+  set_threads(1);
+  Cycle one(cycle::start(scene_of(tracked)), cycle::policy_of(scene_of(tracked)));
+  one.run(1000);
+  set_threads(2);
+  Cycle two(cycle::start(scene_of(tracked)), cycle::policy_of(scene_of(tracked)));
+  two.run(1000);
+  EXPECT_EQ(bits_of(one.state()), bits_of(two.state()));
+}
+
+TEST(Tracked, HasAGuardThatHoldsTheListToo) {
+  Cycle cycle(cycle::start(scene_of(tracked)), cycle::policy_of(scene_of(tracked)));
+  for (int k = 0; k < 2000; ++k) {
+    cycle.step();
+    const assembly::State& state = cycle.state();
+    if (!state.guard) continue;
+    for (std::size_t i = 0; i < state.guard->room.size(); ++i) {
+      const Vec3& x = state.model.bodies.position[i];
+      ASSERT_LE((x - state.guard->position[i]).norm(), state.guard->room[i] * (1 + 1e-12)) << "step " << k;
+      ASSERT_LE((x - state.list.position[i]).norm(), 0.5 * state.list.skin * (1 + 1e-12)) << "step " << k;
+    }
+  }
+  EXPECT_TRUE(cycle.state().guard.has_value());
+}
+
+TEST(Tracked, TakesLargerStepsThanTheBoundOfAllNearPairs) {
+  const auto step_after = [](const std::string& policy) {
+    const model::Scene scene = scene_of(policy);
+    Cycle cycle(cycle::start(scene), cycle::policy_of(scene));
+    cycle.run(3000);
+    return cycle.state().next_dt;
+  };
+  const double bound = step_after("timestep: {policy: bound, safety: 0.98}\n");
+  EXPECT_GT(step_after(tracked), 1.05 * bound);
+}
+
+// A cell that deforms and radii that change have no guard; the step is then the one of policy `bound`.
+TEST(Tracked, IsTheBoundWhereItCannotTrack) {
+  const std::string balls = R"(
+materials: [{name: grain, density: 2500}]
+contacts: [{between: [grain, grain], law: linear, kn: 1e5}]
+timestep: {policy: tracked}
+)";
+  for (const char* const more : {
+           "periodic: {box: [0.2, 0.2, 0.4], velocity_gradient: [[0, 0.1, 0], [0, 0, 0], [0, 0, 0]]}\n"
+           "balls: [{position: [0, 0, 0], radius: 5 mm, material: grain}, {position: [0, 0, 9.9e-3], radius: "
+           "5 mm, material: grain}]\n",
+           "balls: [{position: [0, 0, 0], radius: 5 mm, material: grain, growth: {factor: 1.1, over: 1 s}}, "
+           "{position: [0, 0, 9.9e-3], radius: 5 mm, material: grain}]\n",
+       }) {
+    model::Scene scene = io::read_scene_text(balls + more, ".");
+    const assembly::State state = cycle::start(scene);
+    const double step = cycle::policy_of(scene).dt(state);
+    scene.timestep.policy = model::TimestepPolicy::bound;
+    EXPECT_EQ(step, cycle::policy_of(scene).dt(state));
+    EXPECT_TRUE(std::isfinite(step) && step > 0);
+  }
+}
+
+// Nothing touches at first: the step is that of a first contact, as with policy `bound`.
+TEST(Tracked, HasAStepBeforeAnythingTouches) {
+  model::Scene scene = io::read_scene_text(R"(
+gravity: [0, 0, -9.81]
+materials: [{name: grain, density: 2500}]
+contacts: [{between: [grain, grain], law: linear, kn: 1e5}]
+balls: [{position: [0, 0, 0.05], radius: 5 mm, material: grain}]
+walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]
+timestep: {policy: tracked}
+)",
+                                           ".");
+  Cycle cycle(cycle::start(scene), cycle::policy_of(scene));
+  const double first = cycle.state().next_dt;
+  EXPECT_TRUE(std::isfinite(first));
+  double highest = 0;
+  for (int k = 0; k < 200000 && cycle.state().time < 0.5; ++k) {
+    cycle.step();
+    highest = std::max(highest, cycle.state().model.bodies.position[0].z());
+  }
+  EXPECT_LT(highest, 0.05);
+  EXPECT_LT(cycle.state().model.bodies.velocity[0].norm(), 0.01);
+}
+
+TEST(Tracked, SaysWhatItTakesOfEvery) {
+  const auto message = [](const std::string& timestep) {
+    try {
+      scene_of("timestep: " + timestep + "\n");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message("{policy: tracked, every: auto}"), "");
+  EXPECT_EQ(message("{policy: tracked, every: 200}"), "");
+  EXPECT_EQ(message("{policy: bound, every: 200}"), "");
+  EXPECT_NE(message("{policy: tracked, every: often}").find("neither auto nor a whole number"),
+            std::string::npos);
+  EXPECT_NE(message("{policy: tracked, every: 0}").find("neither auto nor a whole number"),
+            std::string::npos);
+  EXPECT_NE(message("{policy: estimate, every: 200}").find("policy: tracked"), std::string::npos);
+}
+
+TEST(Tracked, HasItsOwnSafety) {
+  EXPECT_EQ(scene_of("timestep: {policy: tracked}\n").timestep.safety, 0.98);
+  EXPECT_EQ(scene_of("timestep: {policy: tracked, safety: 0.9}\n").timestep.safety, 0.9);
+  EXPECT_EQ(scene_of("timestep: {policy: tracked}\n").timestep.every, 0);
+  EXPECT_EQ(scene_of("timestep: {policy: bound, every: 50}\n").timestep.every, 50);
+}
+
+}  // namespace
+}  // namespace eigengrain::test
