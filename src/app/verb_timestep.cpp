@@ -47,6 +47,14 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
+ordered_json to_json(const timestep::Proof& proof) {
+  if (proof.by == timestep::ProofBy::none) return nullptr;
+  return {{"by", timestep::name_of(proof.by)},
+          {"dt", proof.dt},
+          {"sigma", proof.sigma},
+          {"seconds", proof.seconds}};
+}
+
 ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
   ordered_json estimates = ordered_json::array();
   for (const Estimate& e : c.estimates)
@@ -67,7 +75,10 @@ ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
             {"limit", number(c.truth.limit)},
             {"lambda_max", c.truth.lambda_max},
             {"residual", c.truth.residual},
+            {"limit_residual", c.truth.limit_residual},
             {"certified", c.truth.certified},
+            {"proof", to_json(c.truth.proof)},
+            {"limit_proof", to_json(c.truth.limit_proof)},
             {"seconds", c.truth.seconds},
             {"products", c.truth.products}}},
           {"estimates", estimates},
@@ -129,7 +140,9 @@ void timestep(const Options& options) {
   assembly::State state = read_input(options).state;
   if (state.settings.mass_scaling && state.next_dt == 0) cycle::scale_masses(state);
   petsc::start();  // before the clocks of the comparison
-  const Comparison comparison = timestep::compare(state.model);
+  timestep::TruthOptions truth;
+  if (options.certify) truth.certify = timestep::Certify::always;
+  const Comparison comparison = timestep::compare(state.model, truth);
   if (!options.petsc.empty()) petsc::require_options_used();
   const PolicyStep policy = policy_step(state);
   ordered_json report = to_json(comparison, policy);
