@@ -77,17 +77,6 @@ double available_memory() {
   return std::numeric_limits<double>::infinity();
 }
 
-void require_memory(double numbers) {
-  // The factor, and what supernodes are updated in: a tenth of it on packings.
-  const double wanted = 1.2 * sizeof(double) * numbers;
-  const double available = available_memory();
-  if (wanted > available)
-    throw SolverError(
-        fmt::format("the proof wants a sparse factor of {:.2g} numbers, about {:.1f} GB, and {:.1f} GB of "
-                    "memory are free; do without it (no --certify), or prove the scene on a larger machine",
-                    numbers, wanted / 1e9, available / 1e9));
-}
-
 /// Contacts of the body that has most of them.
 double most_contacts(const Unknowns& unknowns, std::span<const ContactElement> elements) {
   std::vector<std::int32_t> count(static_cast<std::size_t>(unknowns.bodies()), 0);
@@ -99,14 +88,24 @@ double most_contacts(const Unknowns& unknowns, std::span<const ContactElement> e
   return most;
 }
 
-/// What the entries of S K S may have lost of its eigenvalues. Each is a sum over c contacts of products of some
-/// twenty numbers, and errs by (c + 30)u of the sum of what they contribute, at most what they contribute to the
-/// diagonal; a row has 6(c + 1) entries.
+/// What the entries of S K S may have lost of its eigenvalues. Each is a sum over c contacts of products of
+/// some twenty numbers, and errs by (c + 30)u of the sum of what they contribute, at most what they
+/// contribute to the diagonal; a row has 6(c + 1) entries.
 double lost_in_entries(double contacts, double largest_diagonal) {
   return 6 * (contacts + 1) * (contacts + 30) * unit_roundoff * largest_diagonal;
 }
 
 }  // namespace
+
+void require_memory(double numbers, double available) {
+  // The factor, and what supernodes are updated in: a tenth of it on packings.
+  const double wanted = 1.2 * sizeof(double) * numbers;
+  if (wanted > available)
+    throw SolverError(
+        fmt::format("the proof wants a sparse factor of {:.2g} numbers, about {:.1f} GB, and {:.1f} GB of "
+                    "memory are free; do without it (no --certify), or prove the scene on a larger machine",
+                    numbers, wanted / 1e9, available / 1e9));
+}
 
 std::optional<double> prove_below(const Unknowns& unknowns, std::span<const ContactElement> elements,
                                   std::span<const double> scale, double sigma) {
@@ -117,17 +116,17 @@ std::optional<double> prove_below(const Unknowns& unknowns, std::span<const Cont
   Factor factor;
   factor.analyzePattern(matrix);
   if (factor.info() != Eigen::Success || factor.cholmod().status != CHOLMOD_OK)
-    throw SolverError(
-        fmt::format("CHOLMOD could not order the matrix of the proof (status {}); do without it (no --certify)",
-                    factor.cholmod().status));
-  require_memory(factor.numbers());
+    throw SolverError(fmt::format(
+        "CHOLMOD could not order the matrix of the proof (status {}); do without it (no --certify)",
+        factor.cholmod().status));
+  require_memory(factor.numbers(), available_memory());
   factor.factorize(matrix);
   const int status = factor.cholmod().status;
   if (status == CHOLMOD_NOT_POSDEF || factor.info() == Eigen::NumericalIssue) return std::nullopt;
   if (status != CHOLMOD_OK)
-    throw SolverError(fmt::format(
-        "CHOLMOD failed with status {} in the proof ({}); do without it (no --certify)", status,
-        status == CHOLMOD_OUT_OF_MEMORY ? "not enough memory" : "see cholmod.h for its meaning"));
+    throw SolverError(
+        fmt::format("CHOLMOD failed with status {} in the proof ({}); do without it (no --certify)", status,
+                    status == CHOLMOD_OUT_OF_MEMORY ? "not enough memory" : "see cholmod.h for its meaning"));
   const double terms = (factor.longest_row() + 2) * unit_roundoff;
   const double gamma = terms / (1 - terms);
   return sigma + gamma / (1 - gamma) * diagonal.sum() +

@@ -2,10 +2,14 @@
 
 #include "eigengrain/base/error.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace eigengrain::timestep {
 namespace {
@@ -71,18 +75,49 @@ petsc::Eigensolver symmetric_solver(Mat matrix, Vec start, PetscInt size, const 
   return solver;
 }
 
+/// A product as a dense matrix, column by column.
+Eigen::MatrixXd dense(StiffnessProduct& product) {
+  const auto size = static_cast<std::size_t>(product.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(product.size(), product.size());
+  std::vector<double> column(size);
+  for (std::size_t k = 0; k < size; ++k) {
+    const std::span<double> unit(matrix.col(static_cast<Eigen::Index>(k)).data(), size);
+    product.apply(unit, column);
+    std::ranges::copy(column, unit.begin());
+  }
+  return matrix;
+}
+
+/// The root of μ² = μ c + k that is not negative, c = x·Cx and k = x·Kx of a unit vector: never above the
+/// largest μ, and off it by the square of the error of x.
+double root(double c, double k) {
+  return 0.5 * (c + std::sqrt(c * c + 4 * k));
+}
+
+/// The eigenvector of the largest μ: x of the largest eigenvalue of K + μC, μ the root of x, and so on (the
+/// safeguarded iteration of Voss and Werner, Math. Meth. Appl. Sci. 4:415, 1982). μ rises to the largest one,
+/// with an error that is squared each time.
+Eigen::VectorXd dense_quadratic_vector(const Eigen::MatrixXd& k, const Eigen::MatrixXd& c) {
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  Eigen::VectorXd x;
+  double mu = 1;
+  for (int step = 0; step < 20; ++step) {
+    solver.compute(k + mu * c);
+    x = solver.eigenvectors().rightCols<1>();
+    const double before = mu;
+    mu = root(x.dot(c * x), x.dot(k * x));
+    if (std::abs(mu - before) <= 1e-12 * mu) break;
+  }
+  return x;
+}
+
 /// coefficients: -K, -C and the identity.
-petsc::PolynomialEigensolver quadratic_solver(std::array<Mat, 3> coefficients, Vec start, PetscInt size,
+petsc::PolynomialEigensolver quadratic_solver(std::array<Mat, 3> coefficients, Vec start,
                                               const TruthOptions& options) {
   petsc::PolynomialEigensolver solver;
   EIGENGRAIN_PETSC(PEPCreate(PETSC_COMM_SELF, solver.put()));
   EIGENGRAIN_PETSC(PEPSetOperators(solver.get(), 3, coefficients.data()));
-  EIGENGRAIN_PETSC(PEPSetType(solver.get(), is_dense(size) ? PEPLINEAR : PEPTOAR));
-  if (is_dense(size)) {
-    EPS linear = nullptr;
-    EIGENGRAIN_PETSC(PEPLinearGetEPS(solver.get(), &linear));
-    EIGENGRAIN_PETSC(EPSSetType(linear, EPSLAPACK));
-  }
+  EIGENGRAIN_PETSC(PEPSetType(solver.get(), PEPTOAR));
   EIGENGRAIN_PETSC(PEPSetConvergenceTest(solver.get(), PEP_CONV_REL));
   EIGENGRAIN_PETSC(PEPSetDimensions(solver.get(), 1, toar_vectors, PETSC_DEFAULT));
   const auto restarts = static_cast<PetscInt>(2 * options.max_products / toar_vectors) + 1;
@@ -103,13 +138,33 @@ petsc::PolynomialEigensolver quadratic_solver(std::array<Mat, 3> coefficients, V
   return solver;
 }
 
+/// x becomes the eigenvector of the largest μ of (μ² + μ c + k) x = 0.
+void iterate_quadratic(Mat k, Mat c, Vec x, const TruthOptions& options) {
+  PetscInt size = 0;
+  EIGENGRAIN_PETSC(VecGetSize(x, &size));
+  petsc::Matrix identity;
+  EIGENGRAIN_PETSC(MatCreateConstantDiagonal(PETSC_COMM_SELF, size, size, size, size, 1.0, identity.put()));
+  const petsc::PolynomialEigensolver solver = quadratic_solver({k, c, identity.get()}, x, options);
+  EIGENGRAIN_PETSC(PEPSolve(solver.get()));
+  PetscInt converged = 0;
+  EIGENGRAIN_PETSC(PEPGetConverged(solver.get(), &converged));
+  if (converged < 1)
+    throw SolverError(
+        fmt::format("the limit of the damped cycle did not converge to a residual of {} in {} products; "
+                    "ask for less, or give the solver more vectors (--petsc \"-pep_ncv 100\")",
+                    options.tolerance, options.max_products));
+  const petsc::Vector imaginary = like(x);  // zero: all of these eigenvalues are real
+  PetscScalar value = 0;
+  PetscScalar imaginary_value = 0;
+  EIGENGRAIN_PETSC(PEPGetEigenpair(solver.get(), 0, &value, &imaginary_value, x, imaginary.get()));
+}
+
 }  // namespace
 
 ProductShell::ProductShell(StiffnessProduct& product, double factor) : product_(product), factor_(factor) {
   const auto size = static_cast<PetscInt>(product.size());
   EIGENGRAIN_PETSC(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, this, matrix_.put()));
-  EIGENGRAIN_PETSC(
-      MatShellSetOperation(mat(), MATOP_MULT, reinterpret_cast<void (*)()>(timestep::multiply)));
+  EIGENGRAIN_PETSC(MatShellSetOperation(mat(), MATOP_MULT, reinterpret_cast<void (*)()>(timestep::multiply)));
   EIGENGRAIN_PETSC(MatSetOption(mat(), MAT_SYMMETRIC, PETSC_TRUE));
 }
 
@@ -178,33 +233,24 @@ Eigenpair largest_quadratic_eigenpair(StiffnessProduct& stiffness, StiffnessProd
                                       const TruthOptions& options) {
   const ProductShell k(stiffness, -1 / (unit * unit));
   const ProductShell c(viscosity, -1 / unit);
-  const auto size = static_cast<PetscInt>(stiffness.size());
-  petsc::Matrix identity;
-  EIGENGRAIN_PETSC(MatCreateConstantDiagonal(PETSC_COMM_SELF, size, size, size, size, 1.0, identity.put()));
   Eigenpair pair{.vector = start_vector(k.mat(), scale, options.seed)};
   Vec x = pair.vector.get();
-  const petsc::PolynomialEigensolver solver =
-      quadratic_solver({k.mat(), c.mat(), identity.get()}, x, size, options);
-  EIGENGRAIN_PETSC(PEPSolve(solver.get()));
-  PetscInt converged = 0;
-  EIGENGRAIN_PETSC(PEPGetConverged(solver.get(), &converged));
-  if (converged < 1)
-    throw SolverError(
-        fmt::format("the limit of the damped cycle did not converge to a residual of {} in {} products; "
-                    "ask for less, or give the solver more vectors (--petsc \"-pep_ncv 100\")",
-                    options.tolerance, stiffness.products() + viscosity.products()));
-  const petsc::Vector imaginary = like(x);  // all of these eigenvalues are real
-  PetscScalar imaginary_value = 0;
-  EIGENGRAIN_PETSC(PEPGetEigenpair(solver.get(), 0, &pair.value, &imaginary_value, x, imaginary.get()));
-  // The root that belongs to x: never above the largest μ, and off by the square of the error of x.
+  if (is_dense(stiffness.size())) {
+    const Eigen::VectorXd found =
+        dense_quadratic_vector(dense(stiffness) / (unit * unit), dense(viscosity) / unit);
+    PetscScalar* values = nullptr;
+    EIGENGRAIN_PETSC(VecGetArrayWrite(x, &values));
+    std::copy_n(found.data(), found.size(), values);
+    EIGENGRAIN_PETSC(VecRestoreArrayWrite(x, &values));
+  } else {
+    iterate_quadratic(k.mat(), c.mat(), x, options);
+  }
   const petsc::Vector kx = like(x);
   const petsc::Vector cx = like(x);
   EIGENGRAIN_PETSC(MatMult(k.mat(), x, kx.get()));
   EIGENGRAIN_PETSC(MatMult(c.mat(), x, cx.get()));
   const double square = dot(x, x);
-  const double of_c = -dot(x, cx.get()) / square;
-  const double of_k = -dot(x, kx.get()) / square;
-  const double mu = 0.5 * (of_c + std::sqrt(of_c * of_c + 4 * of_k));
+  const double mu = root(-dot(x, cx.get()) / square, -dot(x, kx.get()) / square);
   if (mu > 0) {
     EIGENGRAIN_PETSC(VecAXPBYPCZ(kx.get(), mu * mu, mu, 1, x, cx.get()));
     pair.residual = norm(kx.get()) / (mu * mu * std::sqrt(square));

@@ -11,8 +11,8 @@
 /// components.
 namespace eigengrain::timestep {
 
-/// What SLEPc sees of a product: y = factor · S K S x. Refers to the product; the same place for life, as PETSc
-/// keeps a pointer to it.
+/// What SLEPc sees of a product: y = factor · S K S x. Refers to the product; the same place for life, as
+/// PETSc keeps a pointer to it.
 class ProductShell {
  public:
   explicit ProductShell(assembly::StiffnessProduct& product, double factor = 1);
@@ -39,14 +39,15 @@ struct Eigenpair {
   double residual = 0;  ///< |A x - λ x| / |λ x|, computed afresh, not the solver's own estimate
 };
 
-/// The largest eigenvalue of a symmetric positive semidefinite product, by Krylov-Schur iteration from a random
-/// start, or as a dense matrix (LAPACK) where it is small. Throws SolverError where it does not come out well.
+/// The largest eigenvalue of a symmetric positive semidefinite product, by Krylov-Schur iteration from a
+/// random start, or as a dense matrix (LAPACK) where it is small. Throws SolverError where it does not come
+/// out well.
 Eigenpair largest_eigenpair(assembly::StiffnessProduct& product, std::span<const double> scale,
                             const TruthOptions& options);
 
 /// The largest μ with (μ² - μ C - K) x = 0, C and K symmetric positive semidefinite, by the two-level Arnoldi
-/// method for polynomial eigenproblems (TOAR; Lu, Su and Bai, SIAM J. Matrix Anal. Appl. 37:195, 2016), or as a
-/// dense linearization where it is small. The residual is |(μ² - μ C - K) x| / |μ² x|.
+/// method for polynomial eigenproblems (TOAR; Lu, Su and Bai, SIAM J. Matrix Anal. Appl. 37:195, 2016), or
+/// with dense matrices where it is small. The residual is |(μ² - μ C - K) x| / |μ² x|.
 ///
 /// unit  a bound of μ: the problem is solved for μ/unit, so that all coefficients are of order one
 Eigenpair largest_quadratic_eigenpair(assembly::StiffnessProduct& stiffness,

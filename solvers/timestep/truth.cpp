@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace eigengrain::timestep {
@@ -35,28 +36,40 @@ struct Found {
   double dt = infinity;
   double rate = 0;  ///< λ = (2/dt)²
   double residual = 0;
+  std::vector<double> mode;
   Proof proof;
   std::int64_t products = 0;
 };
 
-/// The eigenproblem of a step dt = 2/μ: μ² x = A(μ) x, A(μ) = S (K + μC) S; without dashpots A does not depend on μ.
+/// The eigenproblem of a step dt = 2/μ: μ² x = A(μ) x, A(μ) = S (K + μC) S; without dashpots A does not
+/// depend on μ.
 struct Problem {
   const LinearSystem& system;
-  std::vector<double> scale;  ///< S
+  std::vector<double> scale;   ///< S
   double largest_damping = 0;  ///< α, for bounds
   bool dashpots = false;
 
   /// A step that is proven without the whole system, s.
   double bound(int sweeps) const {
-    return dashpots || largest_damping > 0
-               ? cycle::damped_block_bound(system, largest_damping, sweeps)
-               : cycle::scaled_block_bound(system, sweeps);
+    return dashpots || largest_damping > 0 ? cycle::damped_block_bound(system, largest_damping, sweeps)
+                                           : cycle::scaled_block_bound(system, sweeps);
   }
 
   std::vector<contact::ContactElement> elements(double mu) const {
     return dashpots ? assembly::with_viscosity(system, mu).elements : system.elements;
   }
 };
+
+/// S y / |y|
+std::vector<double> mode_of(Vec y, std::span<const double> scale) {
+  const PetscScalar* values = nullptr;
+  EIGENGRAIN_PETSC(VecGetArrayRead(y, &values));
+  std::vector<double> mode(scale.begin(), scale.end());
+  const double length = std::sqrt(dot(y, y));
+  for (std::size_t k = 0; k < mode.size(); ++k) mode[k] *= values[k] / length;
+  EIGENGRAIN_PETSC(VecRestoreArrayRead(y, &values));
+  return mode;
+}
 
 Found search(const Problem& problem, const TruthOptions& options) {
   Found found;
@@ -68,11 +81,13 @@ Found search(const Problem& problem, const TruthOptions& options) {
         largest_quadratic_eigenpair(stiffness, viscosity, problem.scale, 2 / problem.bound(0), options);
     found.rate = pair.value * pair.value;
     found.residual = pair.residual;
+    found.mode = mode_of(pair.vector.get(), problem.scale);
     found.products = viscosity.products();
   } else {
     const Eigenpair pair = largest_eigenpair(stiffness, problem.scale, options);
     found.rate = pair.value;
     found.residual = pair.residual;
+    found.mode = mode_of(pair.vector.get(), problem.scale);
   }
   found.products += stiffness.products();
   if (found.rate > 0) found.dt = 2 / std::sqrt(found.rate);
@@ -89,24 +104,20 @@ bool prove(const Problem& problem, Found& found) {
     return true;
   }
   const double mu = std::sqrt(wanted);
-  const auto sigma =
-      prove_below(problem.system.unknowns, problem.elements(mu), problem.scale, wanted);
+  const auto sigma = prove_below(problem.system.unknowns, problem.elements(mu), problem.scale, wanted);
   if (!sigma) return false;
   // λ(μ), the largest eigenvalue of A(μ), is less than σ. At μ' = σ/μ it is less than μ'²: with K >= 0
   // A(μ') <= (μ'/μ) A(μ).
   const double dt = problem.dashpots ? 2 * mu / *sigma : 2 / std::sqrt(*sigma);
-  found.proof = {.by = ProofBy::cholesky,
-                 .dt = dt,
-                 .sigma = 4 / (dt * dt),
-                 .seconds = watch.seconds()};
+  found.proof = {.by = ProofBy::cholesky, .dt = dt, .sigma = 4 / (dt * dt), .seconds = watch.seconds()};
   return true;
 }
 
 /// The largest eigenvalue, proven where that is asked for.
 Found solve(const Problem& problem, TruthOptions options) {
   const std::int64_t size = problem.system.unknowns.size();
-  const bool certify = options.certify == Certify::always ||
-                       (options.certify == Certify::small && size <= certified_unknowns);
+  const bool certify =
+      options.certify == Certify::always || (options.certify == Certify::small && size <= certified_unknowns);
   std::int64_t products = 0;
   double larger_than = 0;
   for (int attempt = 0; attempt < attempts; ++attempt, ++options.seed) {
@@ -116,11 +127,11 @@ Found solve(const Problem& problem, TruthOptions options) {
     if (found.rate == 0 || !certify || prove(problem, found)) return found;
     larger_than = std::max(larger_than, found.rate);
   }
-  throw SolverError(
-      fmt::format("the eigensolver found {:.6e} s⁻² from {} start vectors, and a factorisation says that a larger "
-                  "eigenvalue is there; "
-                  "give the solver more vectors (--petsc \"-eps_ncv 100\" or \"-pep_ncv 100\")",
-                  larger_than, attempts));
+  throw SolverError(fmt::format(
+      "the eigensolver found {:.6e} s⁻² from {} start vectors, and a factorisation says that a larger "
+      "eigenvalue is there; "
+      "give the solver more vectors (--petsc \"-eps_ncv 100\" or \"-pep_ncv 100\")",
+      larger_than, attempts));
 }
 
 /// √(1 + α) M^-½
@@ -164,32 +175,36 @@ Truth critical_timestep(const LinearSystem& system, std::span<const double> loca
   petsc::start();
 
   const Stopwatch watch;
-  const Found undamped = solve({.system = system, .scale = scale}, options);
+  Found undamped = solve({.system = system, .scale = scale}, options);
   if (undamped.rate == 0) return truth;  // contacts act, but only along components that are fixed
   truth.dt = undamped.dt;
   truth.lambda_max = undamped.rate;
   truth.residual = undamped.residual;
   truth.proof = undamped.proof;
   truth.products = undamped.products;
+  truth.mode = std::move(undamped.mode);
 
   double alpha = 0;
   const bool alike = all_alike(local_damping, scale, alpha);
   if (alike && system.damping.empty()) {
     truth.limit = cycle::damped_timestep(truth.dt, alpha);
     truth.limit_residual = truth.residual;
+    truth.limit_mode = truth.mode;
+    for (double& x : truth.limit_mode) x *= std::sqrt(1 + alpha);
     truth.limit_proof = truth.proof;
     truth.limit_proof.dt = cycle::damped_timestep(truth.proof.dt, alpha);
     truth.limit_proof.sigma = truth.proof.sigma * (1 + alpha);
   } else {
-    const Found damped = solve({.system = system,
-                                .scale = damped_scale(scale, local_damping),
-                                .largest_damping = *std::ranges::max_element(local_damping),
-                                .dashpots = !system.damping.empty()},
-                               options);
+    Found damped = solve({.system = system,
+                          .scale = damped_scale(scale, local_damping),
+                          .largest_damping = *std::ranges::max_element(local_damping),
+                          .dashpots = !system.damping.empty()},
+                         options);
     truth.limit = damped.dt;
     truth.limit_residual = damped.residual;
     truth.limit_proof = damped.proof;
     truth.products += damped.products;
+    truth.limit_mode = std::move(damped.mode);
   }
   truth.certified = truth.proof.by != ProofBy::none && truth.limit_proof.by != ProofBy::none;
   truth.seconds = watch.seconds();

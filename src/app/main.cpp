@@ -91,7 +91,8 @@ int run_program(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   relaxing->add_option("--max-steps", options.max_steps, "explicit steps to spend; default 1000000")
       ->check(CLI::PositiveNumber);
-  CLI::App* judging = add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
+  CLI::App* judging =
+      add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
   add_petsc(*judging, options, "-eps_ncv 80");
   judging->add_flag("--certify", options.certify,
                     "prove the true step by a sparse factorisation, however long that takes");

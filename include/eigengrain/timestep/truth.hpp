@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 /// The true critical timestep: an eigenvalue of the whole system.
 namespace eigengrain::timestep {
@@ -13,8 +14,8 @@ namespace eigengrain::timestep {
 /// compared. Beyond it the iteration is faster.
 inline constexpr std::int64_t dense_unknowns = 150;
 
-/// Systems up to this size are proven where nothing else is asked for: beyond it a factorisation takes longer than
-/// all else.
+/// Systems up to this size are proven where nothing else is asked for: beyond it a factorisation takes longer
+/// than all else.
 inline constexpr std::int64_t certified_unknowns = 20000;
 
 /// When to prove that nothing larger than the computed eigenvalue exists.
@@ -57,14 +58,17 @@ struct Truth {
   bool certified = false;
   Proof proof;        ///< of dt
   Proof limit_proof;  ///< of limit
+  /// [unknowns.size()] the eigenvectors x of K x = λ M x and of (μ² M' - μ C - K) x = 0, with x·Mx or x·M'x =
+  /// 1; empty where nothing resists.
+  std::vector<double> mode, limit_mode;
   double seconds = 0;         ///< without start-up of libraries, proofs included
   std::int64_t products = 0;  ///< products with K, and with C
 };
 
-/// λ_max by Krylov-Schur iteration (SLEPc) on the matrix-free product, from a random Gaussian start vector, and the
-/// limit of the damped cycle by SLEPc's polynomial eigensolver where it is no multiple of it. The same to the bit
-/// on any number of threads. Throws SolverError when it does not converge, and when a proof that was asked for
-/// does not fit into memory.
+/// λ_max by Krylov-Schur iteration (SLEPc) on the matrix-free product, from a random Gaussian start vector,
+/// and the limit of the damped cycle by SLEPc's polynomial eigensolver where it is no multiple of it. The
+/// same to the bit on any number of threads. Throws SolverError when it does not converge, and when a proof
+/// that was asked for does not fit into memory.
 ///
 /// local_damping  [unknowns.size()] α of each component (assembly::damping_of_unknowns)
 Truth critical_timestep(const assembly::LinearSystem& system, std::span<const double> local_damping,
