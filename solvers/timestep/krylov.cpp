@@ -58,11 +58,11 @@ petsc::Vector like(Vec x) {
   return vector;
 }
 
-petsc::Eigensolver symmetric_solver(Mat matrix, Vec start, PetscInt size, const TruthOptions& options) {
+petsc::Eigensolver symmetric_solver(Mat matrix, Vec start, const TruthOptions& options) {
   petsc::Eigensolver solver;
   EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
   EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), matrix, nullptr));
-  EIGENGRAIN_PETSC(EPSSetType(solver.get(), is_dense(size) ? EPSLAPACK : EPSKRYLOVSCHUR));
+  EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
   EIGENGRAIN_PETSC(EPSSetConvergenceTest(solver.get(), EPS_CONV_REL));
   EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), 1, krylov_vectors, PETSC_DEFAULT));
   const auto restarts = static_cast<PetscInt>(2 * options.max_products / krylov_vectors) + 1;
@@ -138,6 +138,29 @@ petsc::PolynomialEigensolver quadratic_solver(std::array<Mat, 3> coefficients, V
   return solver;
 }
 
+void copy(const Eigen::VectorXd& from, Vec to) {
+  PetscScalar* values = nullptr;
+  EIGENGRAIN_PETSC(VecGetArrayWrite(to, &values));
+  std::ranges::copy(from, values);
+  EIGENGRAIN_PETSC(VecRestoreArrayWrite(to, &values));
+}
+
+/// The largest eigenvalue; x, where it starts, becomes its eigenvector.
+double iterate(Mat matrix, Vec x, const TruthOptions& options) {
+  const petsc::Eigensolver solver = symmetric_solver(matrix, x, options);
+  EIGENGRAIN_PETSC(EPSSolve(solver.get()));
+  PetscInt converged = 0;
+  EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
+  if (converged < 1)
+    throw SolverError(
+        fmt::format("the largest eigenvalue did not converge to a residual of {} in {} products with K; "
+                    "ask for less, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
+                    options.tolerance, options.max_products));
+  PetscScalar value = 0;
+  EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &value, nullptr, x, nullptr));
+  return value;
+}
+
 /// x becomes the eigenvector of the largest μ of (μ² + μ c + k) x = 0.
 void iterate_quadratic(Mat k, Mat c, Vec x, const TruthOptions& options) {
   PetscInt size = 0;
@@ -207,17 +230,13 @@ Eigenpair largest_eigenpair(StiffnessProduct& product, std::span<const double> s
   const ProductShell matrix(product);
   Eigenpair pair{.vector = start_vector(matrix.mat(), scale, options.seed)};
   Vec x = pair.vector.get();
-  const petsc::Eigensolver solver =
-      symmetric_solver(matrix.mat(), x, static_cast<PetscInt>(product.size()), options);
-  EIGENGRAIN_PETSC(EPSSolve(solver.get()));
-  PetscInt converged = 0;
-  EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
-  if (converged < 1)
-    throw SolverError(
-        fmt::format("the largest eigenvalue did not converge to a residual of {} in {} products with K; "
-                    "ask for less, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
-                    options.tolerance, product.products()));
-  EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &pair.value, nullptr, x, nullptr));
+  if (is_dense(product.size())) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(product));
+    pair.value = solver.eigenvalues().tail<1>().value();
+    copy(solver.eigenvectors().rightCols<1>(), x);
+  } else {
+    pair.value = iterate(matrix.mat(), x, options);
+  }
   if (pair.value > 0) {
     const petsc::Vector r = like(x);
     EIGENGRAIN_PETSC(MatMult(matrix.mat(), x, r.get()));
@@ -236,12 +255,7 @@ Eigenpair largest_quadratic_eigenpair(StiffnessProduct& stiffness, StiffnessProd
   Eigenpair pair{.vector = start_vector(k.mat(), scale, options.seed)};
   Vec x = pair.vector.get();
   if (is_dense(stiffness.size())) {
-    const Eigen::VectorXd found =
-        dense_quadratic_vector(dense(stiffness) / (unit * unit), dense(viscosity) / unit);
-    PetscScalar* values = nullptr;
-    EIGENGRAIN_PETSC(VecGetArrayWrite(x, &values));
-    std::copy_n(found.data(), found.size(), values);
-    EIGENGRAIN_PETSC(VecRestoreArrayWrite(x, &values));
+    copy(dense_quadratic_vector(dense(stiffness) / (unit * unit), dense(viscosity) / unit), x);
   } else {
     iterate_quadratic(k.mat(), c.mat(), x, options);
   }

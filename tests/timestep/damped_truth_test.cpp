@@ -243,7 +243,7 @@ TEST(DampedTruth, WithoutDashpotsIsOverRootOnePlusAlphaExactly) {
 // The iteration that larger systems need, against the dense one.
 TEST(DampedTruth, IterationAndDenseLinearizationAgree) {
   SceneBuilder small = damped_scene(0.6, {0.3, 0.2});
-  mix(with_balls(small, unstressed_places(4, 20)), 5);
+  mix(with_balls(small, unstressed_places(4, 8)), 5);
   SceneBuilder large = damped_scene(0.6, {0.3, 0.2});
   mix(with_balls(large, unstressed_places(4, 40)), 5);
   const System a(small);
