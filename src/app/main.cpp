@@ -94,6 +94,8 @@ int run_program(int argc, char** argv) {
   CLI::App* judging =
       add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
   add_petsc(*judging, options, "-eps_ncv 80");
+  judging->add_flag("--tangent", options.tangent,
+                    "what present forces and sliding contacts change of the elastic spectrum");
   judging->add_flag("--certify", options.certify,
                     "prove the true step by a sparse factorisation, however long that takes");
 #endif

@@ -10,13 +10,13 @@
 /// The true critical timestep: an eigenvalue of the whole system.
 namespace eigengrain::timestep {
 
-/// Systems up to this size are solved as dense matrices: 43 µs against 120 at 24 unknowns, 130 against 170 at 48, and 730
-/// against 180 at 72.
+/// Systems up to this size are solved as dense matrices: 43 µs against 120 at 24 unknowns, 130 against 170 at
+/// 48, and 730 against 180 at 72.
 inline constexpr std::int64_t dense_unknowns = 48;
 
-/// Systems up to this size are proven where nothing else is asked for, in a quarter of a second in a periodic packing
-/// (half a second at 16,000 unknowns, 7 s at 48,000); in an open box, with few contacts across any cut, it is
-/// faster (1.3 s at 60,000).
+/// Systems up to this size are proven where nothing else is asked for, in a quarter of a second in a periodic
+/// packing (half a second at 16,000 unknowns, 7 s at 48,000); in an open box, with few contacts across any
+/// cut, it is faster (1.3 s at 60,000).
 inline constexpr std::int64_t certified_unknowns = 10000;
 
 /// When to prove that nothing larger than the computed eigenvalue exists.
