@@ -148,7 +148,7 @@ TangentSpectrum tangent_spectrum(const assembly::Model& model) {
     const double floor = rounding * all.cwiseAbs().maxCoeff();
     result.complex_pairs = std::ranges::count_if(all, [&](const Complex& z) { return z.imag() > floor; });
   } else {
-    result.elastic = ends_of(elastic.get());
+    result.elastic.largest = iterate(elastic.get(), EPS_LARGEST_REAL);  // none of K is negative
     result.sticking = ends_of(sticking.get());
     result.slipping = result.sliding > 0 ? ends_of(slipping.get()) : result.sticking;
     result.complex_pairs = -1;

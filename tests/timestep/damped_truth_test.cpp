@@ -19,6 +19,7 @@
 #include <complex>
 #include <cstdio>
 #include <random>
+#include <tuple>
 
 namespace eigengrain::test {
 namespace {
@@ -231,6 +232,19 @@ TEST(DampedTruth, OfOneModeIsItsClosedForm) {
       const double expected = 2 * (std::sqrt(beta * beta + 1 / (1 + alpha)) - beta);
       EXPECT_NEAR(truth_of(System(builder)).limit / expected, 1, 1e-12) << beta << " " << alpha;
     }
+}
+
+// Eq. 1.35 (tests/bench/damped_limits.py prints more): a safe step of two balls at rest, too long by 1.38 with β = 1 and by
+// 1.81 with α = 0.8 beside it.
+TEST(DampedTruth, IsBelowTheRuleOfPfc3dForOnePair) {
+  for (const auto& [beta, alpha, expected] :
+       {std::tuple{0.0, 0.0, 0.84515}, std::tuple{1.0, 0.0, 1.38}, std::tuple{1.0, 0.8, 1.81}}) {
+    SceneBuilder builder = damped_scene(0.5, {beta, beta});
+    builder.ball(Vec3::Zero()).ball({2 - 1e-9, 0, 0}).damped(alpha);
+    const System s(builder);
+    const double rule = cycle::damped_timestep(cycle::diagonal_estimate(s), alpha);
+    EXPECT_NEAR(rule / truth_of(s).limit, expected, 5e-3);
+  }
 }
 
 TEST(DampedTruth, WithoutDashpotsIsOverRootOnePlusAlphaExactly) {

@@ -27,7 +27,7 @@ struct SpectrumEnds {
 struct TangentSpectrum {
   std::int64_t contacts = 0;  ///< acting
   std::int64_t sliding = 0;   ///< at the limit of friction
-  SpectrumEnds elastic;       ///< of K
+  SpectrumEnds elastic;       ///< of K; large systems have no least one, which is not negative
   SpectrumEnds sticking;      ///< of T, all contacts sticking: K and what present forces add as contacts turn
   SpectrumEnds slipping;      ///< of T, contacts at the limit of friction slipping on; unsymmetric
   Eigenvalue widest;          ///< of that, the one with the largest imaginary part
