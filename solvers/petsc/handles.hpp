@@ -3,6 +3,7 @@
 #include "error.hpp"
 
 #include <slepceps.h>
+#include <slepcpep.h>
 
 #include <utility>
 
@@ -47,5 +48,6 @@ class Owner {
 using Matrix = Owner<Mat, MatDestroy>;
 using Vector = Owner<Vec, VecDestroy>;
 using Eigensolver = Owner<EPS, EPSDestroy>;
+using PolynomialEigensolver = Owner<PEP, PEPDestroy>;
 
 }  // namespace eigengrain::petsc

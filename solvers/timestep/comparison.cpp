@@ -29,12 +29,13 @@ Estimate judged(const Estimator& estimator, const Question& question, const Trut
 
 Comparison compare(const assembly::Model& model, const TruthOptions& options) {
   const assembly::LinearSystem system(model);
-  Comparison result{.bodies = model.bodies.size(),
-                    .contacts = static_cast<std::int64_t>(system.elements.size()),
-                    .unknowns = static_cast<std::int64_t>(system.unknowns.free_components().size()),
-                    .set_aside = static_cast<std::int64_t>(system.unknowns.set_aside().size()),
-                    .truth = critical_timestep(system, assembly::largest_damping(model), options),
-                    .estimates = {}};
+  Comparison result{
+      .bodies = model.bodies.size(),
+      .contacts = static_cast<std::int64_t>(system.elements.size()),
+      .unknowns = static_cast<std::int64_t>(system.unknowns.free_components().size()),
+      .set_aside = static_cast<std::int64_t>(system.unknowns.set_aside().size()),
+      .truth = critical_timestep(system, assembly::damping_of_unknowns(model, system.unknowns), options),
+      .estimates = {}};
   for (const Estimator& estimator : estimators())
     result.estimates.push_back(judged(estimator, {model, system}, result.truth));
   return result;

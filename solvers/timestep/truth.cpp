@@ -6,140 +6,213 @@
 #include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/petsc/session.hpp"
 
-#include "petsc/handles.hpp"
+#include "certificate.hpp"
+#include "krylov.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
+#include <utility>
 #include <vector>
 
 namespace eigengrain::timestep {
 namespace {
 
+using assembly::LinearSystem;
 using assembly::StiffnessProduct;
 
-/// Basis vectors of the Krylov space. More of them save few products on packings (81 at 16 and at 40 vectors
-/// for 10,000 balls) and cost orthogonalisation, which outweighs the products.
-constexpr PetscInt krylov_vectors = 16;
+/// By how much of λ the proven σ may lie above it, before rounding: half of that in dt.
+constexpr double margin = 1e-6;
 
-/// With a residual r, λ errs by some r² of itself: far below what an estimate is judged by.
-constexpr double largest_residual = 1e-8;
+/// Start vectors that are tried where a proof says that something larger is there.
+constexpr int attempts = 3;
 
-PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
-  StiffnessProduct* product = nullptr;
-  PetscCall(MatShellGetContext(matrix, &product));
-  const PetscScalar* from = nullptr;
-  PetscScalar* to = nullptr;
-  PetscCall(VecGetArrayRead(x, &from));
-  PetscCall(VecGetArrayWrite(y, &to));
-  const auto size = static_cast<std::size_t>(product->size());
-  product->apply({from, size}, {to, size});
-  PetscCall(VecRestoreArrayRead(x, &from));
-  PetscCall(VecRestoreArrayWrite(y, &to));
-  return 0;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// A step and what was found out about it.
+struct Found {
+  double dt = infinity;
+  double rate = 0;  ///< λ = (2/dt)²
+  double residual = 0;
+  std::vector<double> mode;
+  Proof proof;
+  std::int64_t products = 0;
+};
+
+/// The eigenproblem of a step dt = 2/μ: μ² x = A(μ) x, A(μ) = S (K + μC) S; without dashpots A does not
+/// depend on μ.
+struct Problem {
+  const LinearSystem& system;
+  std::vector<double> scale;   ///< S
+  double largest_damping = 0;  ///< α, for bounds
+  bool dashpots = false;
+
+  /// A step that is proven without the whole system, s.
+  double bound(int sweeps) const {
+    return dashpots || largest_damping > 0 ? cycle::damped_block_bound(system, largest_damping, sweeps)
+                                           : cycle::scaled_block_bound(system, sweeps);
+  }
+
+  std::vector<contact::ContactElement> elements(double mu) const {
+    return dashpots ? assembly::with_viscosity(system, mu).elements : system.elements;
+  }
+};
+
+/// S y / |y|
+std::vector<double> mode_of(Vec y, std::span<const double> scale) {
+  const PetscScalar* values = nullptr;
+  EIGENGRAIN_PETSC(VecGetArrayRead(y, &values));
+  std::vector<double> mode(scale.begin(), scale.end());
+  const double length = std::sqrt(dot(y, y));
+  for (std::size_t k = 0; k < mode.size(); ++k) mode[k] *= values[k] / length;
+  EIGENGRAIN_PETSC(VecRestoreArrayRead(y, &values));
+  return mode;
 }
 
-petsc::Matrix shell(StiffnessProduct& product) {
-  const auto size = static_cast<PetscInt>(product.size());
-  petsc::Matrix matrix;
-  EIGENGRAIN_PETSC(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &product, matrix.put()));
-  EIGENGRAIN_PETSC(MatShellSetOperation(matrix.get(), MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
-  EIGENGRAIN_PETSC(MatSetOption(matrix.get(), MAT_SYMMETRIC, PETSC_TRUE));
-  return matrix;
+Found search(const Problem& problem, const TruthOptions& options) {
+  Found found;
+  StiffnessProduct stiffness(problem.system.unknowns, problem.system.elements, problem.scale);
+  if (problem.dashpots) {
+    StiffnessProduct viscosity(problem.system.unknowns, assembly::viscous_elements(problem.system),
+                               problem.scale);
+    const Eigenpair pair =
+        largest_quadratic_eigenpair(stiffness, viscosity, problem.scale, 2 / problem.bound(0), options);
+    found.rate = pair.value * pair.value;
+    found.residual = pair.residual;
+    found.mode = mode_of(pair.vector.get(), problem.scale);
+    found.products = viscosity.products();
+  } else {
+    const Eigenpair pair = largest_eigenpair(stiffness, problem.scale, options);
+    found.rate = pair.value;
+    found.residual = pair.residual;
+    found.mode = mode_of(pair.vector.get(), problem.scale);
+  }
+  found.products += stiffness.products();
+  if (found.rate > 0) found.dt = 2 / std::sqrt(found.rate);
+  return found;
 }
 
-/// Gaussian numbers at free components, zeros at masked ones (where scale is zero).
-petsc::Vector start_vector(Mat matrix, std::span<const double> scale, std::uint64_t seed) {
-  petsc::Vector vector;
-  EIGENGRAIN_PETSC(MatCreateVecs(matrix, vector.put(), nullptr));
-  PetscScalar* values = nullptr;
-  EIGENGRAIN_PETSC(VecGetArrayWrite(vector.get(), &values));
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> gaussian;
-  for (std::size_t k = 0; k < scale.size(); ++k) values[k] = scale[k] > 0 ? gaussian(random) : 0.0;
-  EIGENGRAIN_PETSC(VecRestoreArrayWrite(vector.get(), &values));
-  return vector;
+/// Tries to prove what was found. False where something larger must be there.
+bool prove(const Problem& problem, Found& found) {
+  const Stopwatch watch;
+  const double wanted = found.rate * (1 + margin);
+  const double bound = problem.bound(3);
+  if (const double rate = 4 / (bound * bound); rate <= wanted) {
+    found.proof = {.by = ProofBy::bound, .dt = bound, .sigma = rate, .seconds = watch.seconds()};
+    return true;
+  }
+  const double mu = std::sqrt(wanted);
+  const auto sigma = prove_below(problem.system.unknowns, problem.elements(mu), problem.scale, wanted);
+  if (!sigma) return false;
+  // λ(μ), the largest eigenvalue of A(μ), is less than σ. At μ' = σ/μ it is less than μ'²: with K >= 0
+  // A(μ') <= (μ'/μ) A(μ).
+  const double dt = problem.dashpots ? 2 * mu / *sigma : 2 / std::sqrt(*sigma);
+  found.proof = {.by = ProofBy::cholesky, .dt = dt, .sigma = 4 / (dt * dt), .seconds = watch.seconds()};
+  return true;
 }
 
-petsc::Eigensolver largest_eigenvalue_solver(Mat matrix, Vec start, const TruthOptions& options) {
-  petsc::Eigensolver solver;
-  EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
-  EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), matrix, nullptr));
-  EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
-  EIGENGRAIN_PETSC(EPSSetConvergenceTest(solver.get(), EPS_CONV_REL));
-  EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), 1, krylov_vectors, PETSC_DEFAULT));
-  const auto restarts = static_cast<PetscInt>(2 * options.max_products / krylov_vectors) + 1;
-  EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), options.tolerance, restarts));
-  EIGENGRAIN_PETSC(EPSSetInitialSpace(solver.get(), 1, &start));
-  EIGENGRAIN_PETSC(EPSSetFromOptions(solver.get()));
-  // What is asked for is no option.
-  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_HEP));
-  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
-  return solver;
+/// The largest eigenvalue, proven where that is asked for.
+Found solve(const Problem& problem, TruthOptions options) {
+  const std::int64_t size = problem.system.unknowns.size();
+  const bool certify =
+      options.certify == Certify::always || (options.certify == Certify::small && size <= certified_unknowns);
+  std::int64_t products = 0;
+  double larger_than = 0;
+  for (int attempt = 0; attempt < attempts; ++attempt, ++options.seed) {
+    Found found = search(problem, options);
+    found.products += products;
+    products = found.products;
+    if (found.rate == 0 || !certify || prove(problem, found)) return found;
+    larger_than = std::max(larger_than, found.rate);
+  }
+  throw SolverError(fmt::format(
+      "the eigensolver found {:.6e} s⁻² from {} start vectors, and a factorisation says that a larger "
+      "eigenvalue is there; "
+      "give the solver more vectors (--petsc \"-eps_ncv 100\" or \"-pep_ncv 100\")",
+      larger_than, attempts));
 }
 
-/// |A x - λ x| / |λ x|, computed afresh, not the solver's own estimate.
-double relative_residual(Mat matrix, Vec x, double lambda) {
-  petsc::Vector r;
-  EIGENGRAIN_PETSC(VecDuplicate(x, r.put()));
-  EIGENGRAIN_PETSC(MatMult(matrix, x, r.get()));
-  EIGENGRAIN_PETSC(VecAXPY(r.get(), -lambda, x));
-  PetscReal residual = 0;
-  PetscReal norm = 0;
-  EIGENGRAIN_PETSC(VecNorm(r.get(), NORM_2, &residual));
-  EIGENGRAIN_PETSC(VecNorm(x, NORM_2, &norm));
-  return residual / (lambda * norm);
+/// √(1 + α) M^-½
+std::vector<double> damped_scale(std::vector<double> scale, std::span<const double> alpha) {
+  for (std::size_t k = 0; k < scale.size(); ++k) scale[k] *= std::sqrt(1 + alpha[k]);
+  return scale;
 }
 
-/// A loose eigenpair must not pass for the truth.
-void require_eigenpair(const Truth& truth) {
-  if (!std::isfinite(truth.lambda_max) || truth.lambda_max < 0)
-    throw SolverError(
-        fmt::format("the largest eigenvalue came out as {}; stiffnesses and masses of the scene are "
-                    "too far apart for double precision",
-                    truth.lambda_max));
-  if (!(truth.residual <= largest_residual))
-    throw SolverError(
-        fmt::format("the largest eigenvalue has a residual of {:.1e}, and {:.0e} is wanted; ask the "
-                    "eigensolver for more (-eps_tol)",
-                    truth.residual, largest_residual));
+/// α of all free components, where it is the same.
+bool all_alike(std::span<const double> alpha, std::span<const double> scale, double& common) {
+  bool first = true;
+  for (std::size_t k = 0; k < scale.size(); ++k) {
+    if (scale[k] == 0) continue;
+    if (!first && alpha[k] != common) return false;
+    common = alpha[k];
+    first = false;
+  }
+  return true;
 }
 
 }  // namespace
 
-Truth critical_timestep(const assembly::LinearSystem& system, double local_damping,
+std::string_view name_of(ProofBy by) {
+  switch (by) {
+    case ProofBy::none:
+      return "none";
+    case ProofBy::bound:
+      return "bound";
+    case ProofBy::cholesky:
+      break;
+  }
+  return "cholesky";
+}
+
+Truth critical_timestep(const LinearSystem& system, std::span<const double> local_damping,
                         const TruthOptions& options) {
-  Truth truth{.dt = std::numeric_limits<double>::infinity(),
-              .limit = std::numeric_limits<double>::infinity()};
+  Truth truth;
+  truth.dt = truth.limit = infinity;
   const std::vector<double> scale = system.inverse_sqrt_mass();
   if (scale.empty()) return truth;
   petsc::start();
 
   const Stopwatch watch;
-  StiffnessProduct product(system.unknowns, system.elements, scale);
-  const petsc::Matrix matrix = shell(product);
-  const petsc::Vector x = start_vector(matrix.get(), scale, options.seed);
-  const petsc::Eigensolver solver = largest_eigenvalue_solver(matrix.get(), x.get(), options);
-  EIGENGRAIN_PETSC(EPSSolve(solver.get()));
-  PetscInt converged = 0;
-  EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
-  if (converged < 1)
-    throw SolverError(
-        fmt::format("the largest eigenvalue did not converge to a residual of {} in {} products with K; "
-                    "ask for less, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
-                    options.tolerance, product.products()));
-  EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &truth.lambda_max, nullptr, x.get(), nullptr));
-  if (truth.lambda_max == 0) return truth;  // contacts act, but only along components that are fixed
-  truth.residual = relative_residual(matrix.get(), x.get(), truth.lambda_max);
-  require_eigenpair(truth);
-  truth.dt = 2.0 / std::sqrt(truth.lambda_max);
-  truth.limit = system.damping.empty() ? cycle::damped_timestep(truth.dt, local_damping)
-                                       : cycle::damped_block_bound(system, local_damping);
-  truth.products = product.products();
+  Found undamped = solve({.system = system, .scale = scale}, options);
+  if (undamped.rate == 0) return truth;  // contacts act, but only along components that are fixed
+  truth.dt = undamped.dt;
+  truth.lambda_max = undamped.rate;
+  truth.residual = undamped.residual;
+  truth.proof = undamped.proof;
+  truth.products = undamped.products;
+  truth.mode = std::move(undamped.mode);
+
+  double alpha = 0;
+  const bool alike = all_alike(local_damping, scale, alpha);
+  if (alike && system.damping.empty()) {
+    truth.limit = cycle::damped_timestep(truth.dt, alpha);
+    truth.limit_residual = truth.residual;
+    truth.limit_mode = truth.mode;
+    for (double& x : truth.limit_mode) x *= std::sqrt(1 + alpha);
+    truth.limit_proof = truth.proof;
+    truth.limit_proof.dt = cycle::damped_timestep(truth.proof.dt, alpha);
+    truth.limit_proof.sigma = truth.proof.sigma * (1 + alpha);
+  } else {
+    Found damped = solve({.system = system,
+                          .scale = damped_scale(scale, local_damping),
+                          .largest_damping = *std::ranges::max_element(local_damping),
+                          .dashpots = !system.damping.empty()},
+                         options);
+    truth.limit = damped.dt;
+    truth.limit_residual = damped.residual;
+    truth.limit_proof = damped.proof;
+    truth.products += damped.products;
+    truth.limit_mode = std::move(damped.mode);
+  }
+  truth.certified = truth.proof.by != ProofBy::none && truth.limit_proof.by != ProofBy::none;
   truth.seconds = watch.seconds();
   return truth;
+}
+
+Truth critical_timestep(const LinearSystem& system, double local_damping, const TruthOptions& options) {
+  return critical_timestep(system, std::vector<double>(system.mass.size(), local_damping), options);
 }
 
 }  // namespace eigengrain::timestep

@@ -91,8 +91,13 @@ int run_program(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   relaxing->add_option("--max-steps", options.max_steps, "explicit steps to spend; default 1000000")
       ->check(CLI::PositiveNumber);
-  add_petsc(*add_verb(program, "timestep", "estimated and true critical timestep", options, timestep),
-            options, "-eps_ncv 80");
+  CLI::App* judging =
+      add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
+  add_petsc(*judging, options, "-eps_ncv 80");
+  judging->add_flag("--tangent", options.tangent,
+                    "what present forces and sliding contacts change of the elastic spectrum");
+  judging->add_flag("--certify", options.certify,
+                    "prove the true step by a sparse factorisation, however long that takes");
 #endif
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
     fmt::print("{}", io::schema_markdown());

@@ -17,10 +17,12 @@ StepVerdict judge_step(const assembly::State& state, double dt) {
   const double damping = assembly::largest_damping(state.model);
   StepVerdict verdict{.dt = dt, .limit = cycle::damped_block_bound(system, damping)};
   verdict.safe = dt <= verdict.limit;
-  // With dashpots, or one α for a body and another for the next, there is no exact limit to ask for.
-  if (verdict.safe || !system.damping.empty() || !state.model.bodies.damping.empty()) return verdict;
+  if (verdict.safe) return verdict;
 #ifdef EIGENGRAIN_PETSC
-  verdict.limit = timestep::critical_timestep(system, damping).limit;
+  verdict.limit =
+      timestep::critical_timestep(system, assembly::damping_of_unknowns(state.model, system.unknowns),
+                                  {.certify = timestep::Certify::never})
+          .limit;
   verdict.exact = true;
   verdict.safe = dt <= verdict.limit;
 #endif

@@ -3,6 +3,7 @@
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
+#include "eigengrain/timestep/tangent_spectrum.hpp"
 
 #include "input.hpp"
 #include "text.hpp"
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -47,6 +49,14 @@ ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
+ordered_json to_json(const timestep::Proof& proof) {
+  if (proof.by == timestep::ProofBy::none) return nullptr;
+  return {{"by", timestep::name_of(proof.by)},
+          {"dt", proof.dt},
+          {"sigma", proof.sigma},
+          {"seconds", proof.seconds}};
+}
+
 ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
   ordered_json estimates = ordered_json::array();
   for (const Estimate& e : c.estimates)
@@ -67,7 +77,10 @@ ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
             {"limit", number(c.truth.limit)},
             {"lambda_max", c.truth.lambda_max},
             {"residual", c.truth.residual},
+            {"limit_residual", c.truth.limit_residual},
             {"certified", c.truth.certified},
+            {"proof", to_json(c.truth.proof)},
+            {"limit_proof", to_json(c.truth.limit_proof)},
             {"seconds", c.truth.seconds},
             {"products", c.truth.products}}},
           {"estimates", estimates},
@@ -75,6 +88,57 @@ ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
            {{"dt", number(policy.dt)},
             {"ratio_to_limit", number(policy.dt / c.truth.limit)},
             {"safe", policy.dt <= c.truth.limit}}}};
+}
+
+ordered_json to_json(const timestep::Eigenvalue& e, double dt) {
+  if (!e.found()) return nullptr;
+  return {{"real", e.value.real()},
+          {"imaginary", e.value.imag()},
+          {"residual", e.residual},
+          {"growth_per_step", timestep::growth_per_step(e.value, dt)}};
+}
+
+ordered_json to_json(const timestep::SpectrumEnds& ends, double dt) {
+  return {{"largest", to_json(ends.largest, dt)}, {"least", to_json(ends.least, dt)}};
+}
+
+/// growth is that of the step which the policy would take.
+ordered_json to_json(const timestep::TangentSpectrum& t, double dt) {
+  return {{"contacts", t.contacts},
+          {"sliding", t.sliding},
+          {"elastic", to_json(t.elastic, dt)},
+          {"sticking", to_json(t.sticking, dt)},
+          {"slipping", to_json(t.slipping, dt)},
+          {"widest", to_json(t.widest, dt)},
+          {"complex_pairs", t.complex_pairs < 0 ? ordered_json(nullptr) : ordered_json(t.complex_pairs)},
+          {"seconds", t.seconds}};
+}
+
+std::string text_of(const timestep::Eigenvalue& e) {
+  if (!e.found()) return "not found";
+  if (e.value.imag() == 0) return fmt::format("{:.6e}", e.value.real());
+  return fmt::format("{:.6e} +- {:.2e} i", e.value.real(), e.value.imag());
+}
+
+void print(const timestep::TangentSpectrum& t, double dt) {
+  fmt::print("\n{:<34} {:>26} {:>12} {:>26}\n", "eigenvalues of M^-1 T [1/s2]", "largest", "of elastic",
+             "least");
+  const double elastic = t.elastic.largest.value.real();
+  const auto line = [&](const std::string& what, const timestep::SpectrumEnds& ends) {
+    fmt::print("{:<34} {:>26} {:>12.6f} {:>26}\n", what, text_of(ends.largest),
+               ends.largest.value.real() / elastic, text_of(ends.least));
+  };
+  line("elastic (K)", t.elastic);
+  line("with present forces, all stick", t.sticking);
+  line(fmt::format("{} of {} contacts slip", t.sliding, t.contacts), t.slipping);
+  if (t.complex_pairs > 0 || (t.widest.found() && t.widest.value.imag() > 0))
+    fmt::print("flutter: {}the widest pair {} grows by {:.3g} a step of {:.3e} s, and by some at any other\n",
+               t.complex_pairs > 0 ? counted(t.complex_pairs, "complex pair, ", "complex pairs, ") : "",
+               text_of(t.widest), timestep::growth_per_step(t.widest.value, dt), dt);
+  const timestep::Eigenvalue& least = t.slipping.least;
+  if (least.found() && least.value.real() < -1e-9 * elastic)
+    fmt::print("negative stiffness: {} grows by {:.3g} a step of {:.3e} s, and by some at any other\n",
+               text_of(least), timestep::growth_per_step(least.value, dt), dt);
 }
 
 void print_policy(const PolicyStep& policy, const Comparison& c) {
@@ -91,8 +155,9 @@ void print_policy(const PolicyStep& policy, const Comparison& c) {
 std::string damping_text(const assembly::Model& model) {
   const double alpha = assembly::largest_damping(model);
   if (alpha == 0) return "undamped";
-  return model.bodies.damping.empty() ? fmt::format("with local damping {:g}", alpha)
-                                      : fmt::format("with the largest local damping, {:g}, for all", alpha);
+  return model.bodies.damping.empty()
+             ? fmt::format("with local damping {:g}", alpha)
+             : fmt::format("with the local damping of each body, at most {:g}", alpha);
 }
 
 void print(const assembly::State& state, const Comparison& c, const PolicyStep& policy) {
@@ -112,7 +177,8 @@ void print(const assembly::State& state, const Comparison& c, const PolicyStep& 
   fmt::print("\n{:<20} {:>14} {:>9}  {:<22} {:>9} {:>9}\n", "critical timestep", "dt [s]", "of true", "",
              "seconds", "products");
   fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", "true", c.truth.dt, 1.0,
-             fmt::format("residual {:.1e}", c.truth.residual), c.truth.seconds, c.truth.products);
+             fmt::format("residual {:.1e}{}", c.truth.residual, c.truth.certified ? ", proven" : ""),
+             c.truth.seconds, c.truth.products);
   for (const Estimate& e : c.estimates)
     fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", e.name, e.dt, e.ratio_to_true,
                !e.safe ? "UNSAFE" : (e.claim == timestep::Claim::proven ? "safe (proven)" : "safe here"),
@@ -129,14 +195,22 @@ void timestep(const Options& options) {
   assembly::State state = read_input(options).state;
   if (state.settings.mass_scaling && state.next_dt == 0) cycle::scale_masses(state);
   petsc::start();  // before the clocks of the comparison
-  const Comparison comparison = timestep::compare(state.model);
+  timestep::TruthOptions truth;
+  if (options.certify) truth.certify = timestep::Certify::always;
+  const Comparison comparison = timestep::compare(state.model, truth);
   if (!options.petsc.empty()) petsc::require_options_used();
   const PolicyStep policy = policy_step(state);
   ordered_json report = to_json(comparison, policy);
   if (const auto& scaling = state.settings.mass_scaling)
     report["mass_scaling"] = model::name_of(scaling->form);
+  std::optional<timestep::TangentSpectrum> tangent;
+  if (options.tangent) {
+    tangent = timestep::tangent_spectrum(state.model);
+    report["tangent"] = to_json(*tangent, policy.dt);
+  }
   write_json(options.json, report);
   print(state, comparison, policy);
+  if (tangent && comparison.unknowns > 0) print(*tangent, policy.dt);
 }
 
 }  // namespace eigengrain::app

@@ -17,6 +17,8 @@ struct Options {
   std::string output;                  ///< folder of results; empty: see read_input. Of generate: a file
   double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
   std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
+  bool tangent = false;                ///< of timestep: what the elastic stiffness leaves out
+  bool certify = false;                ///< of timestep: prove the truth at any size
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.

@@ -65,6 +65,13 @@ LinearSystem with_viscosity(const LinearSystem& system, double mu) {
   return result;
 }
 
+std::vector<contact::ContactElement> viscous_elements(const LinearSystem& system) {
+  std::vector<contact::ContactElement> elements = system.elements;
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    elements[e].stiffness = {.normal = system.damping[e].normal, .shear = system.damping[e].shear};
+  return elements;
+}
+
 LinearSystem::LinearSystem(const Model& model, Listed which)
     : elements(contact_elements(model, which)),
       damping(contact_damping(model, which)),

@@ -131,7 +131,9 @@ balls: [{lattice: sc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03
         self.assertAlmostEqual(report["true"]["dt"] / (2 * math.sqrt(mass / 2e5)), 1, delta=1e-10)
         self.assertAlmostEqual(report["true"]["limit"] / report["true"]["dt"], 1 / math.sqrt(1.7), delta=1e-12)
         self.assertLess(report["true"]["residual"], 1e-8)
-        self.assertFalse(report["true"]["certified"])
+        self.assertTrue(report["true"]["certified"])
+        self.assertEqual(report["true"]["proof"]["by"], "bound")
+        self.assertAlmostEqual(report["true"]["proof"]["dt"] / report["true"]["dt"], 1, delta=1e-6)
         by_name = {estimate["name"]: estimate for estimate in report["estimates"]}
         self.assertAlmostEqual(by_name["diagonal"]["ratio_to_true"], math.sqrt(1.5), delta=1e-9)
         self.assertFalse(by_name["diagonal"]["safe"])
@@ -139,6 +141,16 @@ balls: [{lattice: sc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03
         self.assertFalse(report["policy"]["safe"])
         self.assertIn("UNSAFE", text)
         self.assertIn("WARNING", text)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_timestep_tells_what_the_elastic_stiffness_leaves_out(self):
+        text, report = self.succeed("timestep", self.scene(PAIR), "--tangent", "--certify")
+        tangent = report["tangent"]
+        self.assertAlmostEqual(tangent["elastic"]["largest"]["real"] / report["true"]["lambda_max"], 1, delta=1e-9)
+        self.assertEqual((tangent["contacts"], tangent["sliding"], tangent["complex_pairs"]), (1, 0, 0))
+        self.assertIn("0 of 1 contacts slip", text)
+        _, report = self.succeed("timestep", self.scene(PAIR))
+        self.assertNotIn("tangent", report)
 
     @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
     def test_policy_bound_obeys_the_damped_limit(self):

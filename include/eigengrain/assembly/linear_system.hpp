@@ -33,4 +33,7 @@ struct LinearSystem {
 /// of the damped cycle may be (docs/theory.md). μ in 1/s.
 LinearSystem with_viscosity(const LinearSystem& system, double mu);
 
+/// C alone: contacts whose stiffness is that of their dashpots, N s/m for N/m.
+std::vector<contact::ContactElement> viscous_elements(const LinearSystem& system);
+
 }  // namespace eigengrain::assembly

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/unknowns.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,16 @@ inline double largest_damping(const Model& model) {
   for (std::size_t i = 0; i < model.bodies.damping.size(); ++i)
     largest = std::max(largest, damping_of(model, i));
   return largest;
+}
+
+/// [unknowns.size()] α of the body that each component belongs to: what a scaling of M by 1/(1 + α) asks for.
+inline std::vector<double> damping_of_unknowns(const Model& model, const Unknowns& unknowns) {
+  std::vector<double> alpha;
+  alpha.reserve(static_cast<std::size_t>(unknowns.size()));
+  for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
+    alpha.insert(alpha.end(), Unknowns::block_size,
+                 damping_of(model, static_cast<std::size_t>(unknowns.body(block))));
+  return alpha;
 }
 
 }  // namespace eigengrain::assembly
