@@ -11,7 +11,8 @@ constexpr std::array all{
     Estimator{.name = "diagonal",
               .source = "PFC3D 4.0, General Formulation, eq. 1.31",
               .claim = Claim::none,
-              .find = [](const Question& q) { return Answer{cycle::diagonal_estimate(q.system)}; }},
+              .find = [](const Question& q) { return Answer{cycle::diagonal_estimate(q.system)}; },
+              .depends_on_frame = true},
     Estimator{.name = "block-bound",
               .source = "docs/theory.md, block bound",
               .claim = Claim::proven,
@@ -38,6 +39,12 @@ std::string_view name_of(Claim claim) {
 
 std::span<const Estimator> estimators() {
   return all;
+}
+
+const Estimator* find_estimator(std::string_view name) {
+  for (const Estimator& estimator : all)
+    if (estimator.name == name) return &estimator;
+  return nullptr;
 }
 
 }  // namespace eigengrain::timestep
