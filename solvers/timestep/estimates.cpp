@@ -67,7 +67,7 @@ constexpr std::array all{
               .source = "sqrt(2 m / sum of kn); YADE, DEM formulation, stability",
               .find = of_system<nodal>},
     Estimator{.name = "mass-over-stiffness",
-              .source = "sqrt(m_min/kn_max); Cundall and Strack 1979",
+              .source = "sqrt(m_min/kn_max), the chain of PFC3D's eq. 1.30",
               .find = of_system<mass_over_stiffness>},
     Estimator{.name = "coordination",
               .source = "sqrt(2 m_min/(z_max kn_max)); after Otsubo, O'Sullivan and Shire 2017",

@@ -16,8 +16,10 @@ namespace eigengrain::timestep {
 namespace {
 
 /// Relative residual at which a Ritz pair counts as converged. Until then vectors lose no more of their
-/// orthogonality than ε over this.
+/// orthogonality than some ε over this.
 constexpr double converged = 1e-9;
+
+constexpr int check_every = 4;
 
 constexpr std::int64_t chunk_size = 1 << 14;
 
@@ -93,6 +95,11 @@ LanczosRun lanczos(const assembly::LinearSystem& system, int steps, std::vector<
   const double norm = std::sqrt(sum_of(n, [&](std::int64_t i) { return v[i] * v[i]; }));
   for_each_index(n, [&](std::int64_t i) { v[i] /= norm; });
   Eigen::VectorXd top;
+  const auto advance = [&](double beta) {  // v_{j+1} = w / β_j
+    for_each_index(n, [&](std::int64_t i) { w[i] /= beta; });
+    std::swap(before, v);
+    std::swap(v, w);
+  };
   for (int step = 0; step < steps; ++step) {
     // w = A v_j - β_{j-1} v_{j-1} - α_j v_j
     product.apply(v, w);
@@ -105,16 +112,19 @@ LanczosRun lanczos(const assembly::LinearSystem& system, int steps, std::vector<
     run.alpha.push_back(alpha);
     run.beta.push_back(std::sqrt(square));
     if (with_vector) basis.push_back(v);
+    // Eigenvalues of the small matrix cost as much as a product on some thousand unknowns.
+    const bool whole = run.beta.back() <= converged * std::abs(alpha);
+    if (step % check_every != check_every - 1 && step < steps - 1 && !whole) {
+      advance(run.beta.back());
+      continue;
+    }
     const Tridiagonal tridiagonal(run);
     run.ritz = tridiagonal.largest();
     run.residual = tridiagonal.residual(run.beta.back(), true);
     if (with_vector) top = tridiagonal.solver.eigenvectors().rightCols<1>();
     const double enough = converged * run.ritz;
     if (!(run.residual > enough && tridiagonal.residual(run.beta.back(), false) > enough)) break;
-    // v_{j+1} = w / β_j
-    for_each_index(n, [&](std::int64_t i) { w[i] /= run.beta.back(); });
-    std::swap(before, v);
-    std::swap(v, w);
+    advance(run.beta.back());
   }
   if (with_vector) {
     run.vector.assign(scale.size(), 0.0);
