@@ -12,22 +12,37 @@ namespace {
 /// Above the truth by more than its own error: an eigenvalue errs by about the square of its residual.
 constexpr double tolerance = 1e-9;
 
-Estimate judged(const Estimator& estimator, const Question& question, const Truth& truth) {
+void judge(const Estimator& estimator, const Question& question, Comparison& result) {
   const Stopwatch watch;
   const Answer answer = estimator.find(question);
-  return {.name = std::string(estimator.name),
-          .source = std::string(estimator.source),
-          .claim = estimator.claim,
-          .dt = answer.dt,
-          .ratio_to_true = answer.dt / truth.dt,
-          .safe = answer.dt <= truth.dt * (1 + tolerance),
-          .seconds = watch.seconds(),
-          .products = answer.products};
+  const double seconds = watch.seconds();
+  if (!answer.left_out.empty()) {
+    result.left_out.push_back({std::string(estimator.name), answer.left_out});
+    return;
+  }
+  const double truth = result.truth.dt;
+  result.estimates.push_back({.name = std::string(estimator.name),
+                              .source = std::string(estimator.source),
+                              .claim = estimator.claim,
+                              .failure = estimator.failure,
+                              .dt = answer.dt,
+                              .range = answer.range,
+                              .ratio_to_true = answer.dt / truth,
+                              .safe = answer.dt <= truth * (1 + tolerance),
+                              .seconds = seconds,
+                              .products = answer.products});
 }
 
 }  // namespace
 
-Comparison compare(const assembly::Model& model, const TruthOptions& options) {
+const Estimate* find_estimate(const Comparison& comparison, std::string_view name) {
+  for (const Estimate& estimate : comparison.estimates)
+    if (estimate.name == name) return &estimate;
+  return nullptr;
+}
+
+Comparison compare(const assembly::Model& model, const TruthOptions& options,
+                   std::span<const model::Material> materials) {
   const assembly::LinearSystem system(model);
   Comparison result{
       .bodies = model.bodies.size(),
@@ -35,9 +50,9 @@ Comparison compare(const assembly::Model& model, const TruthOptions& options) {
       .unknowns = static_cast<std::int64_t>(system.unknowns.free_components().size()),
       .set_aside = static_cast<std::int64_t>(system.unknowns.set_aside().size()),
       .truth = critical_timestep(system, assembly::damping_of_unknowns(model, system.unknowns), options),
-      .estimates = {}};
-  for (const Estimator& estimator : estimators())
-    result.estimates.push_back(judged(estimator, {model, system}, result.truth));
+      .estimates = {},
+      .left_out = {}};
+  for (const Estimator& estimator : estimators()) judge(estimator, {model, system, materials}, result);
   return result;
 }
 

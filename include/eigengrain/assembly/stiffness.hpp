@@ -75,8 +75,8 @@ bool counts(const WithinRooms& which, const Law& law, const typename Law::State&
   return law.acts(motion, state);
 }
 
-/// Calls visit(law, element) for every contact that counts, group after group, in the order of the contacts.
-/// An end at a ball of a clump is one at the clump's holder, with the lever from the clump's centre. Cost
+/// Calls visit(law, element), or visit(law, element, pair), for every contact that counts, group after group,
+/// in the order of the contacts. An end at a ball of a clump is one at the clump's holder, with the lever from the clump's centre. Cost
 /// O(contacts); nothing is allocated here.
 ///
 /// which  Listed or WithinRooms
@@ -113,7 +113,11 @@ void for_each_element(const Model& model, const Which& which, const Visit& visit
           element.b = model.bodies.clumps.owner(element.b);
         }
       }
-      visit(group.law, element);
+      if constexpr (std::is_invocable_v<const Visit&, decltype(group.law), const contact::ContactElement&,
+                                        const contact::Pair&>)
+        visit(group.law, element, group.pairs[c]);
+      else
+        visit(group.law, element);
     }
   });
 }

@@ -5,7 +5,10 @@
 #include "eigengrain/timestep/truth.hpp"
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Estimated against true critical timesteps: the main job.
@@ -16,11 +19,19 @@ struct Estimate {
   std::string name;
   std::string source;  ///< paper, equation or program
   Claim claim = Claim::none;
-  double dt = 0;             ///< s
+  double failure = 0;  ///< Estimator::failure
+  double dt = 0;       ///< s
+  std::optional<Range> range{};
   double ratio_to_true = 0;  ///< dt over Truth::dt
   bool safe = false;         ///< whether it does not exceed the truth in this scene
   double seconds = 0;
   std::int64_t products = 0;  ///< products with K
+};
+
+/// An estimate that this scene has not.
+struct LeftOut {
+  std::string name;
+  std::string reason;
 };
 
 struct Comparison {
@@ -30,9 +41,16 @@ struct Comparison {
   std::int64_t set_aside = 0;  ///< bodies without acting contacts, which are no part of it
   Truth truth;
   std::vector<Estimate> estimates;
+  std::vector<LeftOut> left_out;
 };
 
+/// The estimate with this name; null where the scene has none.
+const Estimate* find_estimate(const Comparison& comparison, std::string_view name);
+
 /// The true critical timestep of the model as it stands, and every estimate beside it.
-Comparison compare(const assembly::Model& model, const TruthOptions& options = {});
+///
+/// materials  of the scene; without them the estimates that ask for moduli are left out
+Comparison compare(const assembly::Model& model, const TruthOptions& options = {},
+                   std::span<const model::Material> materials = {});
 
 }  // namespace eigengrain::timestep
