@@ -93,6 +93,18 @@ double relative_residual(Mat matrix, Vec x, double lambda) {
   return residual / (lambda * norm);
 }
 
+/// The entries of a vector, at length one.
+std::vector<double> unit(Vec x) {
+  EIGENGRAIN_PETSC(VecNormalize(x, nullptr));
+  PetscInt size = 0;
+  EIGENGRAIN_PETSC(VecGetLocalSize(x, &size));
+  const PetscScalar* values = nullptr;
+  EIGENGRAIN_PETSC(VecGetArrayRead(x, &values));
+  std::vector<double> result(values, values + size);
+  EIGENGRAIN_PETSC(VecRestoreArrayRead(x, &values));
+  return result;
+}
+
 /// A loose eigenpair must not pass for the truth.
 void require_eigenpair(const Truth& truth) {
   if (!std::isfinite(truth.lambda_max) || truth.lambda_max < 0)
@@ -137,6 +149,7 @@ Truth critical_timestep(const assembly::LinearSystem& system, double local_dampi
   truth.dt = 2.0 / std::sqrt(truth.lambda_max);
   truth.limit = system.damping.empty() ? cycle::damped_timestep(truth.dt, local_damping)
                                        : cycle::damped_block_bound(system, local_damping);
+  truth.mode = unit(x.get());
   truth.products = product.products();
   truth.seconds = watch.seconds();
   return truth;

@@ -91,8 +91,10 @@ int run_program(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   relaxing->add_option("--max-steps", options.max_steps, "explicit steps to spend; default 1000000")
       ->check(CLI::PositiveNumber);
-  add_petsc(*add_verb(program, "timestep", "estimated and true critical timestep", options, timestep),
-            options, "-eps_ncv 80");
+  CLI::App* asking = add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
+  add_petsc(*asking, options, "-eps_ncv 80");
+  asking->add_flag("--empirical", options.empirical,
+                   "find the limit by running the cycle with one step after the other, too");
 #endif
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
     fmt::print("{}", io::schema_markdown());

@@ -3,6 +3,7 @@
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
+#include "eigengrain/timestep/empirical_limit.hpp"
 
 #include "input.hpp"
 #include "text.hpp"
@@ -87,6 +88,26 @@ void print_policy(const PolicyStep& policy, const Comparison& c) {
         c.truth.limit);
 }
 
+ordered_json to_json(const timestep::EmpiricalLimit& found, const timestep::Truth& truth) {
+  return {{"dt", number(found.dt)},
+          {"stable", number(found.stable)},
+          {"growing", number(found.growing)},
+          {"ratio_to_true", number(found.dt / truth.dt)},
+          {"ratio_to_limit", number(found.dt / truth.limit)},
+          {"linear", found.linear()},
+          {"reservations", found.reservations},
+          {"runs", found.runs},
+          {"steps", found.steps},
+          {"seconds", found.seconds}};
+}
+
+void print(const timestep::EmpiricalLimit& found, const timestep::Truth& truth) {
+  fmt::print("\nBy running ({}, {} steps): motions grow above {:.6e} s, {:.4f} of the limit.\n",
+             counted(found.runs, "run", "runs"), found.steps, found.dt, found.dt / truth.limit);
+  for (const std::string& reservation : found.reservations)
+    fmt::print("  of this state only: {}\n", reservation);
+}
+
 /// What the limit of the cycle counts with.
 std::string damping_text(const assembly::Model& model) {
   const double alpha = assembly::largest_damping(model);
@@ -135,8 +156,15 @@ void timestep(const Options& options) {
   ordered_json report = to_json(comparison, policy);
   if (const auto& scaling = state.settings.mass_scaling)
     report["mass_scaling"] = model::name_of(scaling->form);
+  const bool empirical = options.empirical && std::isfinite(comparison.truth.dt);
+  timestep::EmpiricalLimit found;
+  if (empirical) {
+    found = timestep::empirical_limit(state, comparison.truth);
+    report["empirical"] = to_json(found, comparison.truth);
+  }
   write_json(options.json, report);
   print(state, comparison, policy);
+  if (empirical) print(found, comparison.truth);
 }
 
 }  // namespace eigengrain::app

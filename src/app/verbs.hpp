@@ -17,6 +17,7 @@ struct Options {
   std::string output;                  ///< folder of results; empty: see read_input. Of generate: a file
   double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
   std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
+  bool empirical = false;              ///< of timestep: the limit by running, too
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.

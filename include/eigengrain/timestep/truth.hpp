@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/linear_system.hpp"
 
 #include <cstdint>
+#include <vector>
 
 /// The true critical timestep: an eigenvalue of the whole system.
 namespace eigengrain::timestep {
@@ -24,6 +25,9 @@ struct Truth {
                            ///< eigenvalue, not that it is the largest
   double seconds = 0;      ///< without start-up of libraries
   std::int64_t products = 0;  ///< products with K
+  /// [unknowns] The critical mode x of the symmetric form, unit; velocities along it are M^-½ x. Zero at
+  /// masked components; empty where nothing resists.
+  std::vector<double> mode{};
 };
 
 /// λ_max by Krylov-Schur iteration (SLEPc) on the matrix-free product, from a random Gaussian start vector.

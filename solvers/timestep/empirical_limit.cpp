@@ -1,0 +1,142 @@
+#include "eigengrain/timestep/empirical_limit.hpp"
+
+#include "eigengrain/assembly/linear_system.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/timer.hpp"
+#include "eigengrain/cycle/cycle.hpp"
+
+#include "probe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace eigengrain::timestep {
+namespace {
+
+/// At the limit a motion grows linearly; above it, it has grown beyond doubt when it has grown by this.
+constexpr double beyond_doubt = 1e4;
+/// From the second to the last quarter of a run. What only beats comes back to the same within a quarter.
+constexpr double growth_in_half_a_run = 2;
+constexpr std::int64_t steps_undamped = 800;
+/// With dashpots the growth is of first order in what the step is above the limit, not of order one half.
+constexpr std::int64_t steps_with_dashpots = 8000;
+
+/// The search begins this far on both sides of the expected limit, and looks no farther than the others.
+constexpr double first_guess = 1e-3;
+constexpr double least_part = 0.01;
+constexpr double largest_part = 10;
+
+/// The experiment: the same start with one step after the other.
+class Experiment {
+ public:
+  Experiment(const assembly::State& state, const Truth& truth, const EmpiricalOptions& options)
+      : rest_(in_balance(state)), system_(rest_.model), motion_(system_), truth_(truth) {
+    const std::vector<double>& radius = rest_.model.bodies.radius;
+    way_ = options.amplitude * *std::min_element(radius.begin(), radius.end());
+    steps_ = system_.damping.empty() ? steps_undamped : steps_with_dashpots;
+    limit_.reservations = reservations_about(rest_);
+  }
+
+  /// Whether the motion grows with this step.
+  bool grows(double dt) {
+    assembly::State start = rest_;
+    motion_.set(start, truth_.mode, way_ / dt / motion_.fastest_surface(rest_, truth_.mode));
+    std::vector<double> before(truth_.mode.size());
+    std::vector<double> now(truth_.mode.size());
+    motion_.get(start, before);
+    const double initial = norm_of(before);
+    cycle::Cycle cycle(std::move(start), {[dt](const assembly::State&) { return dt; }, 0});
+    double second_quarter = 0;
+    double last_quarter = 0;
+    bool grown = false;
+    ++limit_.runs;
+    for (std::int64_t n = 0; n < steps_ && !grown; ++n) {
+      cycle.step();
+      ++limit_.steps;
+      motion_.get(cycle.state(), now);
+      const double alternating = half_difference(now, before);
+      std::swap(now, before);
+      grown = !(alternating <= beyond_doubt * initial);  // also if it is no number
+      const std::int64_t quarter = 4 * n / steps_;
+      if (quarter == 1) second_quarter = std::max(second_quarter, alternating);
+      if (quarter == 3) last_quarter = std::max(last_quarter, alternating);
+    }
+    add_changes(rest_, cycle.state(), limit_.reservations);
+    return grown || last_quarter > growth_in_half_a_run * second_quarter;
+  }
+
+  EmpiricalLimit take() { return std::move(limit_); }
+
+ private:
+  static double norm_of(const std::vector<double>& y) {
+    double sum = 0;
+    for (const double value : y) sum += value * value;
+    return std::sqrt(sum);
+  }
+  /// What changes its sign with every step. Slow and rigid motions, which are no matter of the step, cancel.
+  static double half_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return 0.5 * std::sqrt(sum);
+  }
+
+  assembly::State rest_;
+  assembly::LinearSystem system_;
+  ScaledMotion motion_;
+  const Truth& truth_;
+  double way_ = 0;
+  std::int64_t steps_ = 0;
+  EmpiricalLimit limit_;
+};
+
+struct Bracket {
+  double stable = 0;
+  double growing = 0;
+};
+
+/// Steps on both sides of the limit: the nearest first, then ever farther from what was expected.
+Bracket bracket_around(double expected, Experiment& experiment) {
+  Bracket bracket;
+  for (double aside = first_guess; bracket.growing == 0 && aside < largest_part; aside *= 4) {
+    const double dt = expected * (1 + aside);
+    (experiment.grows(dt) ? bracket.growing : bracket.stable) = dt;
+  }
+  for (double aside = first_guess; bracket.stable == 0 && bracket.growing > 0; aside *= 4) {
+    const double part = std::max(1 / (1 + aside), least_part);
+    (experiment.grows(expected * part) ? bracket.growing : bracket.stable) = expected * part;
+    if (part == least_part) break;
+  }
+  if (bracket.stable == 0 || bracket.growing == 0)
+    throw SolverError(fmt::format(
+        "runs find no limit of the step: from {:.3e} to {:.3e} s motions {} at all of them",
+        least_part * expected, largest_part * expected, bracket.stable == 0 ? "grow" : "do not grow"));
+  return bracket;
+}
+
+}  // namespace
+
+EmpiricalLimit empirical_limit(const assembly::State& state, const Truth& truth,
+                               const EmpiricalOptions& options) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (truth.mode.empty())
+    return {.dt = infinity, .stable = infinity, .growing = infinity, .reservations = {}};
+  const Stopwatch watch;
+  Experiment experiment(state, truth, options);
+  Bracket bracket = bracket_around(truth.limit, experiment);
+  while (bracket.growing - bracket.stable > options.accuracy * bracket.stable) {
+    const double dt = 0.5 * (bracket.stable + bracket.growing);
+    (experiment.grows(dt) ? bracket.growing : bracket.stable) = dt;
+  }
+  EmpiricalLimit result = experiment.take();
+  result.dt = 0.5 * (bracket.stable + bracket.growing);
+  result.stable = bracket.stable;
+  result.growing = bracket.growing;
+  result.seconds = watch.seconds();
+  return result;
+}
+
+}  // namespace eigengrain::timestep
