@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace eigengrain::timestep {
@@ -41,41 +42,45 @@ class Experiment {
     limit_.reservations = reservations_about(rest_);
   }
 
-  /// Whether the motion grows with this step.
+  /// Whether the motion grows because of the step: from one to the next with the other sign.
   bool grows(double dt) {
     assembly::State start = rest_;
     motion_.set(start, truth_.mode, way_ / dt / motion_.fastest_surface(rest_, truth_.mode));
     std::vector<double> before(truth_.mode.size());
     std::vector<double> now(truth_.mode.size());
     motion_.get(start, before);
-    const double initial = norm_of(before);
+    const double initial = std::sqrt(product(before, before));
     cycle::Cycle cycle(std::move(start), {[dt](const assembly::State&) { return dt; }, 0});
     double second_quarter = 0;
     double last_quarter = 0;
     bool grown = false;
+    bool smooth = false;
     ++limit_.runs;
     for (std::int64_t n = 0; n < steps_ && !grown; ++n) {
       cycle.step();
       ++limit_.steps;
       motion_.get(cycle.state(), now);
       const double alternating = half_difference(now, before);
-      std::swap(now, before);
       grown = !(alternating <= beyond_doubt * initial);  // also if it is no number
+      smooth = product(now, before) > 0;
       const std::int64_t quarter = 4 * n / steps_;
       if (quarter == 1) second_quarter = std::max(second_quarter, alternating);
       if (quarter == 3) last_quarter = std::max(last_quarter, alternating);
+      std::swap(now, before);
     }
     add_changes(rest_, cycle.state(), limit_.reservations);
-    return grown || last_quarter > growth_in_half_a_run * second_quarter;
+    grown = grown || last_quarter > growth_in_half_a_run * second_quarter;
+    if (grown && smooth)
+      add_once(limit_.reservations,
+               "the state is unstable by itself: it moves away from it smoothly, at any step");
+    return grown && !smooth;
   }
 
   EmpiricalLimit take() { return std::move(limit_); }
 
  private:
-  static double norm_of(const std::vector<double>& y) {
-    double sum = 0;
-    for (const double value : y) sum += value * value;
-    return std::sqrt(sum);
+  static double product(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
   }
   /// What changes its sign with every step. Slow and rigid motions, which are no matter of the step, cancel.
   static double half_difference(const std::vector<double>& a, const std::vector<double>& b) {

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace eigengrain::timestep {
 namespace {
@@ -66,11 +67,11 @@ double prestress(const assembly::Model& model) {
   return most;
 }
 
+}  // namespace
+
 void add_once(std::vector<std::string>& all, std::string text) {
   if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(std::move(text));
 }
-
-}  // namespace
 
 assembly::State in_balance(assembly::State state) {
   stop(state);

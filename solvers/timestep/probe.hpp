@@ -31,6 +31,9 @@ class ScaledMotion {
   const assembly::LinearSystem& system_;
 };
 
+/// Adds a text to a list that does not have it yet.
+void add_once(std::vector<std::string>& all, std::string text);
+
 /// Why small motions about a state are not those of its K, in words; what a run from it shows beside
 /// that is added by add_changes.
 std::vector<std::string> reservations_about(const assembly::State& state);

@@ -27,7 +27,8 @@ bool slides(const Law& law, const contact::ContactMotion& motion, const State& s
   constexpr double probe = 1e-6;  // of the shear force
   const double shear = across(force, motion.normal).norm();
   const double stiffness = law.stiffness(motion, state).shear;
-  if (!(shear > 0) || !(stiffness > 0)) return false;
+  constexpr double rounding = 1e-12;  // of the force, in the part of it across n
+  if (!(shear > rounding * force.norm()) || !(stiffness > 0)) return false;
   contact::ContactMotion more = motion;
   more.displacement = -probe / stiffness * across(force, motion.normal);
   const double raised = across(law.evaluate(more, state, discarded).force, motion.normal).norm();

@@ -38,8 +38,10 @@ struct EmpiricalLimit {
 /// for.
 ///
 /// A motion grows where its part that changes from step to step is, in the last quarter of a run, more than
-/// twice what it was in the second one. A run is 800 steps, with dashpots 8,000: e^0.0089 a step at 1e-5
-/// above the limit without dashpots, about e^0.001 at 5e-4 above it with them.
+/// twice what it was in the second one, and changes its sign with the step (a state that is unstable by
+/// itself, as one that buckles or slides may be, moves away smoothly, which is no matter of the step). A run
+/// is 800 steps, with dashpots 8,000: e^0.0089 a step at 1e-5 above the limit without dashpots, about e^0.001
+/// at 5e-4 above it with them.
 ///
 /// truth  of the state's model (critical_timestep): the mode, and the limit where the search begins
 ///
