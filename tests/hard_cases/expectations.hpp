@@ -19,6 +19,9 @@ struct Expectation {
   Default standard = Default::safe;
   bool linear = true;
   double cycle = 1;  ///< the limit of the cycle by running over that of K
+  /// By how much runs may differ from that. The bracket that they end with is 1e-4 wide, and growth by less
+  /// than some 1e-4 above the limit is not seen with dashpots (timestep/empirical_limit.hpp).
+  double by_running = 2e-4;
 };
 
 /// Scenes whose first moment has no contact to ask about: tests of runs have them.
@@ -70,7 +73,8 @@ inline const std::vector<Expectation>& expectations() {
       {.scene = "edge_of_rigidity", .diagonal = 0.6125, .linear = false},
       {.scene = "rotating_drum", .diagonal = 0.6392, .linear = false},
       {.scene = "tumbling_cluster", .diagonal = 0.6771},
-      {.scene = "breaking_bonds", .diagonal = 0.5923, .linear = false},
+      // Beside the bonds balls just touch: these springs are there in one half of a cycle only.
+      {.scene = "breaking_bonds", .diagonal = 0.5923, .linear = false, .by_running = 1e-3},
       {.scene = "lattice_chain", .critical = 2 / sqrt(5.0), .error = 1e-9, .diagonal = half},
       {.scene = "lattice_square", .critical = 2 / sqrt(10.0), .error = 1e-9, .diagonal = half},
       {.scene = "lattice_hexagonal", .critical = 2 / sqrt(15.0), .error = 1e-9, .diagonal = half},

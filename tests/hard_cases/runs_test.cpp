@@ -37,18 +37,17 @@ struct Run {
 
 const std::vector<Run>& runs() {
   static const std::vector<Run> all{
-      {"tumbling_cluster", 5000, 1.001},
-      {"ten_contacts_at_once", 1000, 10},
-      {"breaking_bonds", 2000, 1.05, 10},
-      {"rotating_drum", 1500, std::numeric_limits<double>::infinity()},
-      {"mass_scaled_mixture", 500, std::numeric_limits<double>::infinity()},
+      {"tumbling_cluster", 5000, 1.001},    {"ten_contacts_at_once", 1000, 10},
+      {"breaking_bonds", 2000, 1.05, 10},   {"rotating_drum", 1500, std::numeric_limits<double>::infinity()},
+      {"mass_scaled_mixture", 500, 1.0001},
   };
   return all;
 }
 
+/// That which undamped leapfrog keeps in a linear system, J.
 double energy_of(const assembly::State& state) {
   const assembly::Energies e = assembly::energies_of(state);
-  return e.kinetic + e.elastic;
+  return e.kinetic_product + e.elastic;
 }
 
 /// Of the moment, with local damping; infinite where nothing touches.
