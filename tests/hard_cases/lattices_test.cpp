@@ -25,7 +25,7 @@ struct Lattice {
 
 /// Bloch's theorem: the largest eigenvalue of Σ 2 (1 - cos q·n)(n nᵀ + s (1 - n nᵀ)) over the three
 /// directions of bonds, and over all waves that the box of the scene holds, 6 by 2√3 diameters. M and K are
-/// among them; the infinite lattice has at most 7.5939 instead of 7.5088 (s = ⅔).
+/// among them; the infinite lattice has at most 7.5937 instead of 7.5088 (s = ⅔).
 double hexagonal_held(double s) {
   const double root3 = std::sqrt(3.0);
   const std::array<Eigen::Vector2d, 3> bonds{{{1, 0}, {0.5, 0.5 * root3}, {-0.5, 0.5 * root3}}};
