@@ -33,13 +33,29 @@ struct Run {
   /// change its energy by up to ¼Δt²k/m, one way or the other (docs/theory.md). Infinite where a wall works.
   double energy;
   std::int64_t breaks = 0;  ///< bonds, at least
+  std::string name{};       ///< of the test, where a scene has several runs
+  std::vector<std::string> overrides{};
 };
 
 const std::vector<Run>& runs() {
+  const double works = std::numeric_limits<double>::infinity();  // as a wall does
+  const std::string ten = "ten_contacts_at_once";
   static const std::vector<Run> all{
-      {"tumbling_cluster", 5000, 1.001},    {"ten_contacts_at_once", 1000, 10},
-      {"breaking_bonds", 2000, 1.05, 10},   {"rotating_drum", 1500, std::numeric_limits<double>::infinity()},
-      {"mass_scaled_mixture", 500, 1.0001},
+      {.scene = "tumbling_cluster", .steps = 5000, .energy = 1.001},
+      {.scene = ten, .steps = 1000, .energy = 10},
+      {.scene = ten,
+       .steps = 1000,
+       .energy = 10,
+       .name = "fast",
+       .overrides = {"balls.0.velocity=[0, 0, -0.5]"}},
+      {.scene = ten,
+       .steps = 1000,
+       .energy = 10,
+       .name = "faster",
+       .overrides = {"balls.0.velocity=[0, 0, -1]"}},
+      {.scene = "breaking_bonds", .steps = 2000, .energy = 1.05, .breaks = 10},
+      {.scene = "rotating_drum", .steps = 1500, .energy = works},
+      {.scene = "mass_scaled_mixture", .steps = 500, .energy = 1.0001},
   };
   return all;
 }
@@ -57,6 +73,10 @@ double limit_of(const assembly::State& state) {
       .limit;
 }
 
+std::int64_t acting(const assembly::State& state) {
+  return static_cast<std::int64_t>(assembly::LinearSystem(state.model).elements.size());
+}
+
 struct Course {
   double energy = 0;          ///< largest, over that of the start
   double of_limit = 0;        ///< largest step over the limit of its moment
@@ -65,22 +85,23 @@ struct Course {
   std::optional<cycle::Trouble> trouble;
 };
 
-Course course_of(const std::string& scene, const std::string& policy, std::int64_t steps) {
-  const std::vector<std::string> overrides{"timestep.policy=" + policy};
+Course course_of(const std::string& scene, const std::string& policy, std::int64_t steps,
+                 std::vector<std::string> overrides = {}) {
+  overrides.push_back("timestep.policy=" + policy);
   assembly::State state = start_of(scene, overrides);
   const cycle::TimestepPolicy step = cycle::policy_of(state.settings);
   cycle::Cycle cycle(std::move(state), step);
   cycle::Watch watch(cycle.state());
   const double start = energy_of(cycle.state());
   Course course;
-  std::int64_t touching = -1;
+  std::int64_t touching = acting(cycle.state());
   for (std::int64_t n = 0; n < steps && !course.trouble; ++n) {
     cycle.step();
-    const auto now = static_cast<std::int64_t>(assembly::LinearSystem(cycle.state().model).elements.size());
+    const std::int64_t now = acting(cycle.state());
     // Where no contact comes or goes the limit changes slowly.
     if (now != touching || n % 20 == 0)
       course.of_limit = std::max(course.of_limit, cycle.state().next_dt / limit_of(cycle.state()));
-    if (touching >= 0) course.most_new = std::max(course.most_new, now - touching);
+    course.most_new = std::max(course.most_new, now - touching);
     touching = now;
     course.energy = std::max(course.energy, energy_of(cycle.state()) / start);
     course.breaks += static_cast<std::int64_t>(cycle.take_breaks().size());
@@ -98,7 +119,7 @@ class StableRun : public testing::TestWithParam<std::pair<Run, std::string>> {};
 
 TEST_P(StableRun, StaysBelowTheLimit) {
   const auto& [run, policy] = GetParam();
-  const Course course = course_of(run.scene, policy, run.steps);
+  const Course course = course_of(run.scene, policy, run.steps, run.overrides);
   EXPECT_FALSE(course.trouble) << course.trouble->what;
   EXPECT_LE(course.of_limit, 1);
   if (std::isfinite(run.energy)) {
@@ -114,15 +135,20 @@ std::vector<std::pair<Run, std::string>> all_runs() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, StableRun, testing::ValuesIn(all_runs()),
-                         [](const auto& test) { return test.param.first.scene + "_" + test.param.second; });
+INSTANTIATE_TEST_SUITE_P(Scenes, StableRun, testing::ValuesIn(all_runs()), [](const auto& test) {
+  const Run& run = test.param.first;
+  return run.scene + (run.name.empty() ? "" : "_" + run.name) + "_" + test.param.second;
+});
 
-// The estimate was made while nothing touched, and ten contacts later it is above the limit.
+// The estimate was made while nothing touched, and ten contacts later it is above the limit. A fast ball has
+// it made anew in the step in which they form, by which time they are so deep that energy came out of
+// nothing.
 TEST(TenContactsAtOnce, AreTooManyForTheEstimate) {
   const Course course = course_of("ten_contacts_at_once", "estimate", 1000);
   EXPECT_EQ(course.most_new, 10);
   EXPECT_NEAR(course.of_limit, 0.8 * std::sqrt(10 * 0.91345) / 2, 1e-3);
-  ASSERT_TRUE(course.trouble);
+  EXPECT_TRUE(course.trouble);
+  EXPECT_TRUE(course_of("ten_contacts_at_once", "estimate", 1000, {"balls.0.velocity=[0, 0, -1]"}).trouble);
 }
 
 // What the rule of PFC3D gives for clumps is above the limit, and the cycle leaves the number line.
