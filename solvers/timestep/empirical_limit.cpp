@@ -45,9 +45,9 @@ class Experiment {
   /// Whether the motion grows because of the step: from one to the next with the other sign.
   bool grows(double dt) {
     assembly::State start = rest_;
-    motion_.set(start, truth_.mode, way_ / dt / motion_.fastest_surface(rest_, truth_.mode));
-    std::vector<double> before(truth_.mode.size());
-    std::vector<double> now(truth_.mode.size());
+    motion_.set(start, truth_.limit_mode, way_ / dt / motion_.fastest_surface(rest_, truth_.limit_mode));
+    std::vector<double> before(truth_.limit_mode.size());
+    std::vector<double> now(truth_.limit_mode.size());
     motion_.get(start, before);
     const double initial = std::sqrt(product(before, before));
     cycle::Cycle cycle(std::move(start), {[dt](const assembly::State&) { return dt; }, 0});
@@ -91,7 +91,7 @@ class Experiment {
 
   assembly::State rest_;
   assembly::LinearSystem system_;
-  ScaledMotion motion_;
+  Motion motion_;
   const Truth& truth_;
   double way_ = 0;
   std::int64_t steps_ = 0;
@@ -127,7 +127,7 @@ Bracket bracket_around(double expected, Experiment& experiment) {
 EmpiricalLimit empirical_limit(const assembly::State& state, const Truth& truth,
                                const EmpiricalOptions& options) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  if (truth.mode.empty())
+  if (truth.limit_mode.empty())
     return {.dt = infinity, .stable = infinity, .growing = infinity, .reservations = {}};
   const Stopwatch watch;
   Experiment experiment(state, truth, options);

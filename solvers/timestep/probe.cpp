@@ -90,31 +90,27 @@ assembly::State in_balance(assembly::State state) {
   return state;
 }
 
-void ScaledMotion::set(assembly::State& state, std::span<const double> y, double factor) const {
+void Motion::set(assembly::State& state, std::span<const double> v, double factor) const {
   model::Bodies& bodies = state.model.bodies;
   model::Clumps& clumps = bodies.clumps;
   for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block) {
     const std::int32_t body = system_.unknowns.body(block);
     const auto i = static_cast<std::size_t>(body);
-    Vec3 v = Vec3::Zero();
-    for (int k = 0; k < Unknowns::block_size; ++k) {
-      const auto number = static_cast<std::size_t>(Unknowns::block_size * block + k);
-      v[k] = factor * y[number] / std::sqrt(system_.mass[number]);
-    }
+    const Vec3 value = factor * Eigen::Map<const Vec3>(v.data() + Unknowns::block_size * block);
     const std::int32_t clump = clumps.of(body);
     const auto c = static_cast<std::size_t>(clump);
     if (clump == model::Clumps::none) {
-      (system_.unknowns.is_rotation(block) ? bodies.spin : bodies.velocity)[i] = v;
+      (system_.unknowns.is_rotation(block) ? bodies.spin : bodies.velocity)[i] = value;
     } else if (system_.unknowns.is_rotation(block)) {
-      clumps.spin[c] = clumps.orientation[c] * v;
+      clumps.spin[c] = clumps.orientation[c] * value;
       clumps.angular_momentum[c] = model::angular_momentum(clumps, clump, clumps.spin[c]);
     } else {
-      clumps.velocity[c] = v;
+      clumps.velocity[c] = value;
     }
   }
 }
 
-void ScaledMotion::get(const assembly::State& state, std::span<double> y) const {
+void Motion::get(const assembly::State& state, std::span<double> y) const {
   const model::Bodies& bodies = state.model.bodies;
   const model::Clumps& clumps = bodies.clumps;
   for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block) {
@@ -136,7 +132,7 @@ void ScaledMotion::get(const assembly::State& state, std::span<double> y) const 
   }
 }
 
-double ScaledMotion::fastest_surface(const assembly::State& state, std::span<const double> y) const {
+double Motion::fastest_surface(const assembly::State& state, std::span<const double> v) const {
   const model::Bodies& bodies = state.model.bodies;
   double most = 0;
   for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block) {
@@ -146,10 +142,8 @@ double ScaledMotion::fastest_surface(const assembly::State& state, std::span<con
     if (system_.unknowns.is_rotation(block))
       arm = clump == model::Clumps::none ? bodies.radius[static_cast<std::size_t>(body)]
                                          : bodies.clumps.radius[static_cast<std::size_t>(clump)];
-    for (int k = 0; k < Unknowns::block_size; ++k) {
-      const auto number = static_cast<std::size_t>(Unknowns::block_size * block + k);
-      most = std::max(most, arm * std::abs(y[number]) / std::sqrt(system_.mass[number]));
-    }
+    const Eigen::Map<const Vec3> value(v.data() + Unknowns::block_size * block);
+    most = std::max(most, arm * value.cwiseAbs().maxCoeff());
   }
   return most;
 }

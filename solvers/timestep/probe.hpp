@@ -14,18 +14,18 @@ namespace eigengrain::timestep {
 /// contacts and gravity: in balance to rounding. The loads of the scene are replaced.
 assembly::State in_balance(assembly::State state);
 
-/// The motion of a state as scaled velocities y = M^½ v, on the unknowns of a system.
-class ScaledMotion {
+/// The motion of a state on the unknowns of a system.
+class Motion {
  public:
   /// Refers to the system, which is that of the state's model and must outlive it.
-  explicit ScaledMotion(const assembly::LinearSystem& system) : system_(system) {}
+  explicit Motion(const assembly::LinearSystem& system) : system_(system) {}
 
-  /// Gives a state the velocities factor · M^-½ y; those of other bodies stay.
-  void set(assembly::State& state, std::span<const double> y, double factor) const;
-  /// y of a state, into a vector of that size.
+  /// Gives a state the velocities factor · v; those of bodies without unknowns stay.
+  void set(assembly::State& state, std::span<const double> v, double factor) const;
+  /// y = M^½ v of a state, so that y·y is twice its kinetic energy; zero at masked components.
   void get(const assembly::State& state, std::span<double> y) const;
-  /// The largest velocity of any body's surface in M^-½ y: by translation or by rotation.
-  double fastest_surface(const assembly::State& state, std::span<const double> y) const;
+  /// The largest velocity of any body's surface in v: by translation or by rotation.
+  double fastest_surface(const assembly::State& state, std::span<const double> v) const;
 
  private:
   const assembly::LinearSystem& system_;

@@ -93,16 +93,15 @@ double relative_residual(Mat matrix, Vec x, double lambda) {
   return residual / (lambda * norm);
 }
 
-/// The entries of a vector, at length one.
-std::vector<double> unit(Vec x) {
-  EIGENGRAIN_PETSC(VecNormalize(x, nullptr));
-  PetscInt size = 0;
-  EIGENGRAIN_PETSC(VecGetLocalSize(x, &size));
+/// S y / |y|
+std::vector<double> mode_of(Vec y, std::span<const double> scale) {
+  EIGENGRAIN_PETSC(VecNormalize(y, nullptr));
   const PetscScalar* values = nullptr;
-  EIGENGRAIN_PETSC(VecGetArrayRead(x, &values));
-  std::vector<double> result(values, values + size);
-  EIGENGRAIN_PETSC(VecRestoreArrayRead(x, &values));
-  return result;
+  EIGENGRAIN_PETSC(VecGetArrayRead(y, &values));
+  std::vector<double> mode(scale.begin(), scale.end());
+  for (std::size_t k = 0; k < mode.size(); ++k) mode[k] *= values[k];
+  EIGENGRAIN_PETSC(VecRestoreArrayRead(y, &values));
+  return mode;
 }
 
 /// A loose eigenpair must not pass for the truth.
@@ -149,7 +148,8 @@ Truth critical_timestep(const assembly::LinearSystem& system, double local_dampi
   truth.dt = 2.0 / std::sqrt(truth.lambda_max);
   truth.limit = system.damping.empty() ? cycle::damped_timestep(truth.dt, local_damping)
                                        : cycle::damped_block_bound(system, local_damping);
-  truth.mode = unit(x.get());
+  truth.mode = truth.limit_mode = mode_of(x.get(), scale);
+  for (double& value : truth.limit_mode) value *= std::sqrt(1 + local_damping);
   truth.products = product.products();
   truth.seconds = watch.seconds();
   return truth;

@@ -73,11 +73,12 @@ def of_limits(reports):
 
 def of_estimates(reports):
     asked = [(number, report) for number, (_, report) in enumerate(reports, 1) if report["true"]["dt"] is not None]
-    names = [e["name"] for e in asked[0][1]["estimates"]]
+    ratios = [{e["name"]: e["ratio_to_true"] for e in report["estimates"]} for _, report in asked]
+    names = list(dict.fromkeys(name for of_scene in ratios for name in of_scene))  # a scene may not have all
     yield "| estimate | " + " | ".join(str(number) for number, _ in asked) + " |"
     yield "| --- |" + " ---: |" * len(asked)
-    for k, name in enumerate(names):
-        yield f"| {name} | " + " | ".join(ratio(report["estimates"][k]["ratio_to_true"]) for _, report in asked) + " |"
+    for name in names:
+        yield f"| {name} | " + " | ".join(ratio(of_scene.get(name)) for of_scene in ratios) + " |"
 
 
 def tables(program):

@@ -25,9 +25,9 @@ struct Truth {
                            ///< eigenvalue, not that it is the largest
   double seconds = 0;      ///< without start-up of libraries
   std::int64_t products = 0;  ///< products with K
-  /// [unknowns] The critical mode x of the symmetric form, unit; velocities along it are M^-½ x. Zero at
-  /// masked components; empty where nothing resists.
-  std::vector<double> mode{};
+  /// [unknowns.size()] the eigenvectors x of K x = λ M x and of (μ² M' - μ C - K) x = 0, with x·Mx or x·M'x =
+  /// 1; empty where nothing resists. With dashpots the second is the first, as long as the limit is a bound.
+  std::vector<double> mode{}, limit_mode{};
 };
 
 /// λ_max by Krylov-Schur iteration (SLEPc) on the matrix-free product, from a random Gaussian start vector.
