@@ -91,10 +91,11 @@ int run_program(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   relaxing->add_option("--max-steps", options.max_steps, "explicit steps to spend; default 1000000")
       ->check(CLI::PositiveNumber);
-  CLI::App* asking = add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
-  add_petsc(*asking, options, "-eps_ncv 80");
-  asking->add_flag("--empirical", options.empirical,
-                   "find the limit by running the cycle with one step after the other, too");
+  CLI::App* judging =
+      add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
+  add_petsc(*judging, options, "-eps_ncv 80");
+  judging->add_flag("--empirical", options.empirical,
+                    "find the limit by running the cycle with one step after the other, too");
 #endif
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
     fmt::print("{}", io::schema_markdown());
