@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
+#include <random>
 #include <utility>
 
 namespace eigengrain::timestep {
@@ -26,6 +28,11 @@ constexpr std::int64_t steps_undamped = 800;
 /// With dashpots the growth is of first order in what the step is above the limit, not of order one half.
 constexpr std::int64_t steps_with_dashpots = 8000;
 
+/// Of the motion at the start all modes share this at random, so that one that K puts below its critical
+/// mode, or forbids to move at all, is not missed. A few hundred steps make up for it.
+constexpr double at_random = 1e-3;
+constexpr std::uint64_t seed = 1;
+
 /// The search begins this far on both sides of the expected limit, and looks no farther than the others.
 constexpr double first_guess = 1e-3;
 constexpr double least_part = 0.01;
@@ -35,7 +42,7 @@ constexpr double largest_part = 10;
 class Experiment {
  public:
   Experiment(const assembly::State& state, const Truth& truth, const EmpiricalOptions& options)
-      : rest_(in_balance(state)), system_(rest_.model), motion_(system_), truth_(truth) {
+      : rest_(in_balance(state)), system_(rest_.model), motion_(system_), start_(start(system_, truth)) {
     const std::vector<double>& radius = rest_.model.bodies.radius;
     way_ = options.amplitude * *std::min_element(radius.begin(), radius.end());
     steps_ = system_.damping.empty() ? steps_undamped : steps_with_dashpots;
@@ -44,13 +51,13 @@ class Experiment {
 
   /// Whether the motion grows because of the step: from one to the next with the other sign.
   bool grows(double dt) {
-    assembly::State start = rest_;
-    motion_.set(start, truth_.limit_mode, way_ / dt / motion_.fastest_surface(rest_, truth_.limit_mode));
-    std::vector<double> before(truth_.limit_mode.size());
-    std::vector<double> now(truth_.limit_mode.size());
-    motion_.get(start, before);
+    assembly::State moving = rest_;
+    motion_.set(moving, start_, way_ / dt / motion_.fastest_surface(rest_, start_));
+    std::vector<double> before(start_.size());
+    std::vector<double> now(start_.size());
+    motion_.get(moving, before);
     const double initial = std::sqrt(product(before, before));
-    cycle::Cycle cycle(std::move(start), {[dt](const assembly::State&) { return dt; }, 0});
+    cycle::Cycle cycle(std::move(moving), {[dt](const assembly::State&) { return dt; }, 0});
     double second_quarter = 0;
     double last_quarter = 0;
     bool grown = false;
@@ -79,6 +86,16 @@ class Experiment {
   EmpiricalLimit take() { return std::move(limit_); }
 
  private:
+  /// Velocities along the critical mode, x·M'x = 1, and a little of all others.
+  static std::vector<double> start(const assembly::LinearSystem& system, const Truth& truth) {
+    std::vector<double> v = truth.limit_mode;
+    const std::vector<double> scale = system.inverse_sqrt_mass();
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> gaussian;
+    const double part = at_random / std::sqrt(static_cast<double>(v.size()));
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] += part * scale[k] * gaussian(random);
+    return v;
+  }
   static double product(const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
   }
@@ -92,7 +109,7 @@ class Experiment {
   assembly::State rest_;
   assembly::LinearSystem system_;
   Motion motion_;
-  const Truth& truth_;
+  std::vector<double> start_;
   double way_ = 0;
   std::int64_t steps_ = 0;
   EmpiricalLimit limit_;

@@ -81,6 +81,15 @@ TEST(EmpiricalLimit, SaysWhatIsNotLinear) {
   EXPECT_EQ(reservations("oblique_pair"), "");
 }
 
+// With k_s = 0.95 k_n the axial mode is critical for K, and with the pull the transverse one for the cycle.
+TEST(EmpiricalLimit, FindsAModeThatKPutsSecond) {
+  const std::vector<std::string> overrides{"contacts.0.ks=0.95"};
+  const assembly::State state = start_of("taut_chain", overrides);
+  const timestep::Comparison found = timestep::compare(state.model);
+  EXPECT_NEAR(timestep::empirical_limit(state, found.truth).dt / found.truth.dt,
+              1 / std::sqrt(0.95 + 0.2 / 2.2), 2e-4);
+}
+
 // With k_s below F/d the column buckles, whatever the step. That is smooth, and the limit stays what it is.
 TEST(EmpiricalLimit, TellsBucklingFromAStepThatIsTooLong) {
   const std::vector<std::string> overrides{"contacts.0.ks=0.05"};

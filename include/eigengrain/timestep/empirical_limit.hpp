@@ -34,8 +34,8 @@ struct EmpiricalLimit {
 /// The state is brought to rest and into balance: walls, cell and radii stop, and every body gets the
 /// constant load that cancels what acts on it. So what moves is the linearised scheme about this state, with
 /// its damping, dashpots and whatever its forces add to K. It is started with velocities along the critical
-/// mode, at which z = -1 (docs/theory.md): in linear scenes the answer is the limit to the accuracy asked
-/// for.
+/// mode, at which z = -1 (docs/theory.md), and a thousandth of that in all other modes: in linear scenes the
+/// answer is the limit to the accuracy asked for.
 ///
 /// A motion grows where its part that changes from step to step is, in the last quarter of a run, more than
 /// twice what it was in the second one, and changes its sign with the step (a state that is unstable by
