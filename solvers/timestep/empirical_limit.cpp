@@ -42,10 +42,13 @@ constexpr double largest_part = 10;
 class Experiment {
  public:
   Experiment(const assembly::State& state, const Truth& truth, const EmpiricalOptions& options)
-      : rest_(in_balance(state)), system_(rest_.model), motion_(system_), start_(start(system_, truth)) {
+      : rest_(in_balance(state)),
+        system_(rest_.model),
+        motion_(system_),
+        start_(start(system_, truth)),
+        steps_(system_.damping.empty() ? steps_undamped : steps_with_dashpots) {
     const std::vector<double>& radius = rest_.model.bodies.radius;
     way_ = options.amplitude * *std::min_element(radius.begin(), radius.end());
-    steps_ = system_.damping.empty() ? steps_undamped : steps_with_dashpots;
     limit_.reservations = reservations_about(rest_);
   }
 
@@ -110,8 +113,8 @@ class Experiment {
   assembly::LinearSystem system_;
   Motion motion_;
   std::vector<double> start_;
+  std::int64_t steps_;
   double way_ = 0;
-  std::int64_t steps_ = 0;
   EmpiricalLimit limit_;
 };
 

@@ -18,7 +18,10 @@
 namespace eigengrain::timestep {
 namespace {
 
-using assembly::Unknowns;
+/// Where the three numbers of a block begin.
+std::ptrdiff_t first_of(std::int32_t block) {
+  return static_cast<std::ptrdiff_t>(assembly::Unknowns::block_size) * block;
+}
 
 /// Overlaps of this part of the radius change eigenvalues by as much, which no accuracy asked for sees.
 constexpr double unstressed = 1e-8;
@@ -96,7 +99,7 @@ void Motion::set(assembly::State& state, std::span<const double> v, double facto
   for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block) {
     const std::int32_t body = system_.unknowns.body(block);
     const auto i = static_cast<std::size_t>(body);
-    const Vec3 value = factor * Eigen::Map<const Vec3>(v.data() + Unknowns::block_size * block);
+    const Vec3 value = factor * Eigen::Map<const Vec3>(v.data() + first_of(block));
     const std::int32_t clump = clumps.of(body);
     const auto c = static_cast<std::size_t>(clump);
     if (clump == model::Clumps::none) {
@@ -125,8 +128,8 @@ void Motion::get(const assembly::State& state, std::span<double> y) const {
       v = (clumps.orientation[c].conjugate() * clumps.angular_momentum[c]).cwiseQuotient(clumps.inertia[c]);
     else
       v = clumps.velocity[c];
-    for (int k = 0; k < Unknowns::block_size; ++k) {
-      const auto number = static_cast<std::size_t>(Unknowns::block_size * block + k);
+    for (int k = 0; k < assembly::Unknowns::block_size; ++k) {
+      const auto number = static_cast<std::size_t>(first_of(block) + k);
       y[number] = system_.unknowns.is_fixed(block, k) ? 0.0 : std::sqrt(system_.mass[number]) * v[k];
     }
   }
@@ -142,7 +145,7 @@ double Motion::fastest_surface(const assembly::State& state, std::span<const dou
     if (system_.unknowns.is_rotation(block))
       arm = clump == model::Clumps::none ? bodies.radius[static_cast<std::size_t>(body)]
                                          : bodies.clumps.radius[static_cast<std::size_t>(clump)];
-    const Eigen::Map<const Vec3> value(v.data() + Unknowns::block_size * block);
+    const Eigen::Map<const Vec3> value(v.data() + first_of(block));
     most = std::max(most, arm * value.cwiseAbs().maxCoeff());
   }
   return most;
