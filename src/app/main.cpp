@@ -98,6 +98,8 @@ int run_program(int argc, char** argv) {
                     "what present forces and sliding contacts change of the elastic spectrum");
   judging->add_flag("--certify", options.certify,
                     "prove the true step by a sparse factorisation, however long that takes");
+  judging->add_flag("--empirical", options.empirical,
+                    "find the limit by running the cycle with one step after the other, too");
 #endif
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
     fmt::print("{}", io::schema_markdown());

@@ -3,6 +3,7 @@
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
+#include "eigengrain/timestep/empirical_limit.hpp"
 #include "eigengrain/timestep/tangent_spectrum.hpp"
 
 #include "input.hpp"
@@ -158,6 +159,26 @@ void print_policy(const PolicyStep& policy, const Comparison& c) {
         c.truth.limit);
 }
 
+ordered_json to_json(const timestep::EmpiricalLimit& found, const timestep::Truth& truth) {
+  return {{"dt", number(found.dt)},
+          {"stable", number(found.stable)},
+          {"growing", number(found.growing)},
+          {"ratio_to_true", number(found.dt / truth.dt)},
+          {"ratio_to_limit", number(found.dt / truth.limit)},
+          {"linear", found.linear()},
+          {"reservations", found.reservations},
+          {"runs", found.runs},
+          {"steps", found.steps},
+          {"seconds", found.seconds}};
+}
+
+void print(const timestep::EmpiricalLimit& found, const timestep::Truth& truth) {
+  fmt::print("\nBy running ({}, {} steps): motions grow above {:.6e} s, {:.4f} of the limit.\n",
+             counted(found.runs, "run", "runs"), found.steps, found.dt, found.dt / truth.limit);
+  for (const std::string& reservation : found.reservations)
+    fmt::print("  of this state only: {}\n", reservation);
+}
+
 /// What the limit of the cycle counts with.
 std::string damping_text(const assembly::Model& model) {
   const double alpha = assembly::largest_damping(model);
@@ -225,9 +246,15 @@ void timestep(const Options& options) {
     tangent = timestep::tangent_spectrum(state.model);
     report["tangent"] = to_json(*tangent, policy.dt);
   }
+  std::optional<timestep::EmpiricalLimit> empirical;
+  if (options.empirical && std::isfinite(comparison.truth.dt)) {
+    empirical = timestep::empirical_limit(state, comparison.truth);
+    report["empirical"] = to_json(*empirical, comparison.truth);
+  }
   write_json(options.json, report);
   print(state, comparison, policy);
   if (tangent && comparison.unknowns > 0) print(*tangent, policy.dt);
+  if (empirical) print(*empirical, comparison.truth);
 }
 
 }  // namespace eigengrain::app

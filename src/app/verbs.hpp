@@ -19,6 +19,7 @@ struct Options {
   std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
   bool tangent = false;                ///< of timestep: what the elastic stiffness leaves out
   bool certify = false;                ///< of timestep: prove the truth at any size
+  bool empirical = false;              ///< of timestep: the limit by running, too
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.

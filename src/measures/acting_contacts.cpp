@@ -27,7 +27,7 @@ bool slides(const Law& law, const contact::ContactMotion& motion, const State& s
   constexpr double probe = 1e-6;  // of the shear force
   const double shear = across(force, motion.normal).norm();
   const double stiffness = law.stiffness(motion, state).shear;
-  constexpr double rounding = 1e-14;  // of the force: what is left across n of a force along it
+  constexpr double rounding = 1e-12;  // of the force: what is left across n of a force along it
   if (!(shear > rounding * force.norm()) || !(stiffness > 0)) return false;
   contact::ContactMotion more = motion;
   more.displacement = -probe / stiffness * across(force, motion.normal);

@@ -234,8 +234,8 @@ TEST(DampedTruth, OfOneModeIsItsClosedForm) {
     }
 }
 
-// Eq. 1.35 (tests/bench/damped_limits.py prints more): a safe step of two balls at rest, too long by 1.38 with β = 1 and by
-// 1.81 with α = 0.8 beside it.
+// Eq. 1.35 (tests/bench/damped_limits.py prints more): a safe step of two balls at rest, too long by 1.38
+// with β = 1 and by 1.81 with α = 0.8 beside it.
 TEST(DampedTruth, IsBelowTheRuleOfPfc3dForOnePair) {
   for (const auto& [beta, alpha, expected] :
        {std::tuple{0.0, 0.0, 0.84515}, std::tuple{1.0, 0.0, 1.38}, std::tuple{1.0, 0.8, 1.81}}) {

@@ -76,8 +76,8 @@ bool counts(const WithinRooms& which, const Law& law, const typename Law::State&
 }
 
 /// Calls visit(law, element), or visit(law, element, pair), for every contact that counts, group after group,
-/// in the order of the contacts. An end at a ball of a clump is one at the clump's holder, with the lever from the clump's centre. Cost
-/// O(contacts); nothing is allocated here.
+/// in the order of the contacts. An end at a ball of a clump is one at the clump's holder, with the lever
+/// from the clump's centre. Cost O(contacts); nothing is allocated here.
 ///
 /// which  Listed or WithinRooms
 template <class Which, class Visit>
