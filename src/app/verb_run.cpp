@@ -19,10 +19,15 @@ namespace {
 using assembly::State;
 
 nlohmann::ordered_json to_json(const CycleWork& work, const State& state, double rate) {
-  nlohmann::ordered_json report{{"steps", work.steps},         {"step", state.step},
-                                {"time", state.time},          {"dt", state.dt},
-                                {"seconds", work.seconds},     {"particle_steps_per_second", rate},
-                                {"lists", state.list.rebuilds}};
+  nlohmann::ordered_json report{
+      {"steps", work.steps},
+      {"step", state.step},
+      {"time", state.time},
+      {"dt", state.dt},
+      {"seconds", work.seconds},
+      {"particle_steps_per_second", rate},
+      {"lists", state.list.rebuilds},
+      {"policy", {{"asked", work.steps_chosen}, {"seconds", work.choosing_seconds}}}};
   add_balance(report, assembly::balance_of(state));
   add_energies(report, state);
   if (state.ledger) add_ledger(report, state);
@@ -45,6 +50,9 @@ void conclude(const CycleWork& work, const State& state, const std::filesystem::
   fmt::print("{}: {} in {}, t = {:.6g} s", state.settings.name, counted(work.steps, "step", "steps"),
              duration_text(work.seconds), state.time);
   if (rate > 0) fmt::print(", {:.3g} million ball steps a second", 1e-6 * rate);
+  if (state.settings.timestep.policy == model::TimestepPolicy::tracked && work.seconds > 0)
+    fmt::print("\nstep proven anew {}, in {:.1f}% of the time", counted(work.steps_chosen, "time", "times"),
+               100 * work.choosing_seconds / work.seconds);
   if (report.contains("bonds"))
     fmt::print("\nbonds: {} intact, {} broken", grouped(report["bonds"]["intact"]), grouped(work.broken));
   fmt::print("\n{}\nstate: {}\n", balance_text(assembly::balance_of(state)), state_file.string());
