@@ -21,7 +21,7 @@ struct Point {
 struct Series {
   std::string name;
   Look look{};
-  std::vector<Point> points;
+  std::vector<Point> points{};
   bool joined = false;
 };
 
@@ -69,7 +69,7 @@ struct StripChart {
   Axis x;
   std::string x_name;
   std::optional<double> guide{};  ///< a value to compare with
-  std::vector<Strip> strips;
+  std::vector<Strip> strips{};
   double width = 720;
 };
 std::string svg_of(const StripChart& chart);

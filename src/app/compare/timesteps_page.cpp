@@ -1,0 +1,384 @@
+#include "eigengrain/base/text.hpp"
+
+#include "../text.hpp"
+#include "report/chart.hpp"
+#include "report/page.hpp"
+#include "standing.hpp"
+#include "timesteps_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace eigengrain::app {
+namespace {
+
+using report::Axis;
+using report::Cell;
+using report::Emphasis;
+using report::Look;
+using report::Mark;
+using report::Page;
+using timestep::Estimate;
+
+/// Errors below this are drawn as none: a hundredth of a percent.
+constexpr double nearest_error = 1e-4;
+
+Look look_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::proven:
+      return {Mark::circle, report::colour::blue, true};
+    case Verdict::probable:
+      return {Mark::diamond, report::colour::green, true};
+    case Verdict::safe_here:
+      return {Mark::square, report::colour::ink, false};
+    case Verdict::unsafe:
+      break;
+  }
+  return {Mark::triangle, report::colour::vermilion, true};
+}
+
+std::string key_of_verdicts() {
+  return report::svg_of_key({{look_of(Verdict::proven), "safe, proven"},
+                             {look_of(Verdict::probable), "safe but for a stated probability"},
+                             {look_of(Verdict::safe_here), "a rule, safe here"},
+                             {look_of(Verdict::unsafe), "UNSAFE: longer than the true step"}});
+}
+
+std::string three_digits(double value) {
+  return report::number_text(value);
+}
+
+std::string ratio_text(double ratio) {
+  if (!std::isfinite(ratio)) return "∞";
+  return ratio < 10 ? fmt::format("{:.3f}", ratio) : three_digits(ratio);
+}
+
+std::string names_of(const std::vector<const Standing*>& standings) {
+  std::vector<std::string> names;
+  for (const Standing* standing : standings) names.push_back(standing->name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::vector<const ComparedScene*> compared(const TimestepsReport& report) {
+  std::vector<const ComparedScene*> scenes;
+  for (const ComparedScene& scene : report.scenes)
+    if (scene.skipped.empty()) scenes.push_back(&scene);
+  return scenes;
+}
+
+// ---- across scenes ---------------------------------------------------------------------------------------
+
+void add_safety(const TimestepsReport& report, Page& page) {
+  const std::vector<const ComparedScene*> scenes = compared(report);
+  const std::vector<Standing> standings = standings_of(report.scenes);
+  std::vector<const Standing*> proven;
+  std::vector<const Standing*> lucky;
+  std::vector<const Standing*> broken;
+  std::vector<std::string> unsafe;
+  for (const Standing& s : standings) {
+    if (s.unsafe > 0) {
+      unsafe.push_back(fmt::format("{} is unsafe in {} of {}, at worst {} times the true step ({}).", s.name,
+                                   s.unsafe, counted(s.scenes, "scene", "scenes"), ratio_text(s.largest),
+                                   s.largest_in));
+      if (s.claim == timestep::Claim::proven) broken.push_back(&s);
+    } else {
+      (s.claim == timestep::Claim::none ? lucky : proven).push_back(&s);
+    }
+  }
+  page.section("Which estimates are safe");
+  page.paragraph(fmt::format(
+      "Of {} in {}, {} exceed the true critical step somewhere, and {} never do{}.",
+      counted(static_cast<std::int64_t>(standings.size()), "estimate", "estimates"),
+      counted(static_cast<std::int64_t>(scenes.size()), "scene", "scenes"), unsafe.size(),
+      standings.size() - unsafe.size(),
+      proven.empty()
+          ? std::string()
+          : fmt::format(", among them those that are proven or safe but for a stated probability: {}",
+                        names_of(proven))));
+  if (!broken.empty())
+    page.paragraph(fmt::format(
+        "Estimates that claim a proof and are unsafe here, which is a mistake of the program: {}.",
+        names_of(broken)));
+  if (!lucky.empty())
+    page.paragraph(fmt::format("Rules that were safe in these scenes, which proves nothing of others: {}.",
+                               names_of(lucky)));
+  page.list(unsafe);
+}
+
+void add_matrix(const TimestepsReport& report, Page& page) {
+  const std::vector<const ComparedScene*> scenes = compared(report);
+  report::Table table{.columns = {{.name = "estimate"}}, .rows = {}};
+  for (const ComparedScene* scene : scenes)
+    table.columns.push_back({.name = scene->name, .number = true, .upright = true});
+  table.columns.push_back({.name = "cost", .number = true});
+  for (const Standing& standing : standings_of(report.scenes)) {
+    std::vector<Cell> row{{standing.name}};
+    for (const ComparedScene* scene : scenes) {
+      const Estimate* e = timestep::find_estimate(scene->comparison, standing.name);
+      if (e == nullptr)
+        row.push_back({"·", Emphasis::faint});
+      else if (!e->safe)
+        row.push_back({"▲ " + ratio_text(e->ratio_to_true), Emphasis::bad});
+      else
+        row.push_back({ratio_text(e->ratio_to_true),
+                       verdict_on(*e) == Verdict::proven ? Emphasis::good : Emphasis::none});
+    }
+    row.push_back({three_digits(standing.median_products)});
+    table.rows.push_back(std::move(row));
+  }
+  page.table(
+      table,
+      "Ratio of each estimate to the true critical step, before any safety factor. ▲: unsafe. Blue: proven. "
+      "·: the scene has no such estimate. Cost: median over the scenes, in products with K that take the "
+      "same "
+      "time.");
+}
+
+void add_run_lengths(const TimestepsReport& report, Page& page) {
+  const std::vector<RunLengths> lengths = run_lengths(report.scenes);
+  if (lengths.empty()) return;
+  page.section("Steps saved in a run");
+  std::vector<std::string> best;
+  for (const RunLengths& mine : lengths) {
+    const bool safe =
+        std::all_of(mine.lengths.begin(), mine.lengths.end(), [](const RunLength& l) { return l.safe; });
+    if (safe && best.size() < 3) best.push_back(fmt::format("{} ({:.2f})", mine.name, mine.median()));
+  }
+  page.paragraph(
+      best.empty()
+          ? "None of them is below the limit of the cycle in every scene."
+          : fmt::format(
+                "The shortest runs, in the median over scenes, that stay below the limit of the cycle "
+                "everywhere: {}.",
+                fmt::join(best, ", ")));
+  double low = 0.5;
+  double high = 2;
+  report::StripChart chart{.title = "Steps of a run by estimate, relative to PFC3D's rule",
+                           .x = Axis::logarithmic(1, 2),
+                           .x_name = "steps for the same time, relative to 0.8 of PFC3D's estimate",
+                           .guide = 1.0};
+  for (const RunLengths& mine : lengths) {
+    report::Strip strip{.name = mine.name, .values = {}, .middle = mine.median()};
+    for (const RunLength& length : mine.lengths) {
+      if (!(length.relative_steps > 0)) continue;  // an estimate without limit
+      low = std::min(low, length.relative_steps);
+      high = std::max(high, length.relative_steps);
+      strip.values.push_back(
+          {length.relative_steps, look_of(length.safe ? Verdict::proven : Verdict::unsafe)});
+    }
+    chart.strips.push_back(std::move(strip));
+  }
+  chart.x = Axis::logarithmic(low, high);
+  page.picture(
+      svg_of(chart),
+      "Number of steps for the same time; a mark a scene, a bar at the median; to the left is faster. "
+      "Circles: "
+      "the step is below the limit of the cycle, with local damping and dashpots. Triangles: it is not. "
+      "Rules "
+      "are taken times 0.8, whatever the damping, as codes do; estimates that are proven, or safe but for a "
+      "stated probability, times 0.98 and times what damping leaves of the true step; policies with their "
+      "own "
+      "safety.");
+}
+
+// ---- cost against size -----------------------------------------------------------------------------------
+
+void add_sizes(const std::vector<CostOfSize>& sizes, Page& page) {
+  if (sizes.size() < 2) return;
+  page.section("Cost against the number of bodies");
+  const std::vector<Growth> growth = growth_of(sizes);
+  const auto [least, most] = std::minmax_element(
+      growth.begin(), growth.end(), [](const Growth& a, const Growth& b) { return a.exponent < b.exponent; });
+  page.paragraph(fmt::format(
+      "From {} to {} bodies the time grows with exponents between {:.2f} ({}) and {:.2f} ({}); 1 is linear.",
+      grouped(sizes[sizes.size() - 2].bodies), grouped(sizes.back().bodies), least->exponent, least->name,
+      most->exponent, most->name));
+  double low = std::numeric_limits<double>::infinity();
+  double high = 0;
+  report::Chart chart{.title = "Seconds of each estimate against the number of bodies",
+                      .x = Axis::logarithmic(static_cast<double>(sizes.front().bodies),
+                                             static_cast<double>(sizes.back().bodies)),
+                      .y = Axis::logarithmic(1, 2),
+                      .x_name = "bodies",
+                      .y_name = "seconds",
+                      .height = 560};
+  for (const Growth& of : growth) {
+    report::Series series{
+        .name = of.name, .look = {Mark::square, report::colour::grey, false}, .joined = true};
+    if (of.name == name_of_product) series.look = {Mark::diamond, report::colour::ink, true};
+    if (of.name == name_of_truth) series.look = {Mark::circle, report::colour::ink, true};
+    if (const timestep::Estimator* e = timestep::find_estimator(of.name); e != nullptr) {
+      if (e->claim == timestep::Claim::proven) series.look = look_of(Verdict::proven);
+      if (e->claim == timestep::Claim::probable) series.look = look_of(Verdict::probable);
+    }
+    for (const CostOfSize& size : sizes) {
+      const double seconds = seconds_of(size, of.name);
+      series.points.push_back({static_cast<double>(size.bodies), seconds});
+      if (!(seconds > 0)) continue;
+      low = std::min(low, seconds);
+      high = std::max(high, seconds);
+    }
+    chart.series.push_back(std::move(series));
+  }
+  chart.y = Axis::logarithmic(low, high);
+  const auto first = static_cast<double>(sizes.front().bodies);
+  const auto last = static_cast<double>(sizes.back().bodies);
+  const double start = std::max(chart.y.low() * 1.3, high * 1.2 * first / last);
+  const double end = std::min(last, first * chart.y.high() / start);
+  chart.guides.push_back({"slope 1", {{first, start}, {end, start * end / first}}});
+  page.picture(
+      svg_of(chart),
+      "Seconds of one answer, on packings of 2 m balls on a face-centred lattice whose centres and radii are "
+      "disordered so that half of the 12 neighbours touch: the contacts of a settled packing, made in linear "
+      "time. Filled circles: proven; filled diamonds: safe but for a stated probability; open squares: "
+      "rules; "
+      "black: one product with K, and the true step.");
+}
+
+// ---- scene by scene --------------------------------------------------------------------------------------
+
+void add_scene_picture(const ComparedScene& scene, Page& page) {
+  double low_cost = 1;
+  double high_cost = 10;
+  double lowest = -0.1;
+  double highest = 0;
+  report::Chart chart{
+      .title = "Error against cost of each estimate in " + scene.name,
+      .x = Axis::logarithmic(1, 10),
+      .y = Axis::signed_distance(-1, 1, nearest_error),
+      .x_name = fmt::format("cost in products with K that take the same time (one takes {} s)",
+                            three_digits(scene.product_seconds)),
+      .y_name = "step, from the true one",
+      .height = 470};
+  for (const Estimate& e : scene.comparison.estimates) {
+    const double cost = equivalent_products(scene, e);
+    const double error = e.ratio_to_true - 1;
+    chart.series.push_back({.name = e.name, .look = look_of(verdict_on(e)), .points = {{cost, error}}});
+    if (!std::isfinite(error)) continue;
+    low_cost = std::min(low_cost, cost);
+    high_cost = std::max(high_cost, cost);
+    lowest = std::min(lowest, error);
+    highest = std::max(highest, error);
+  }
+  chart.x = Axis::logarithmic(low_cost, high_cost);
+  chart.y = Axis::signed_distance(lowest, highest, nearest_error);
+  chart.guides.push_back({"", {{chart.x.low(), 0}, {chart.x.high(), 0}}});
+  page.picture(
+      svg_of(chart),
+      fmt::format(
+          "{}: what each estimate is off by, against what it costs. On the dashed line the estimate is "
+          "the true step; below it the step is shorter than need be, above it the run blows up. "
+          "Logarithmic both ways from {}%.",
+          scene.name, three_digits(100 * nearest_error)));
+}
+
+void add_scene_table(const ComparedScene& scene, Page& page) {
+  report::Table table{.columns = {{.name = "estimate"},
+                                  {.name = "step [s]", .number = true},
+                                  {.name = "of true", .number = true},
+                                  {.name = "cost", .number = true},
+                                  {.name = "seconds", .number = true},
+                                  {.name = "verdict"},
+                                  {.name = "source"}},
+                      .rows = {}};
+  std::vector<const Estimate*> sorted;
+  for (const Estimate& e : scene.comparison.estimates) sorted.push_back(&e);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Estimate* a, const Estimate* b) {
+    return std::abs(a->ratio_to_true - 1) < std::abs(b->ratio_to_true - 1);
+  });
+  const auto emphasis_of = [](Verdict verdict) {
+    if (verdict == Verdict::unsafe) return Emphasis::bad;
+    return verdict == Verdict::proven ? Emphasis::good : Emphasis::none;
+  };
+  for (const Estimate* e : sorted) {
+    const Verdict verdict = verdict_on(*e);
+    std::string said = text_of(verdict);
+    if (verdict == Verdict::probable) said = fmt::format("safe but for p < {}", three_digits(e->failure));
+    if (e->range)
+      said +=
+          fmt::format("; {} to {} as the frame turns", ratio_text(e->range->least / e->dt * e->ratio_to_true),
+                      ratio_text(e->range->largest / e->dt * e->ratio_to_true));
+    table.rows.push_back({{e->name},
+                          {fmt::format("{:.4e}", e->dt)},
+                          {ratio_text(e->ratio_to_true), emphasis_of(verdict)},
+                          {three_digits(equivalent_products(scene, *e))},
+                          {three_digits(e->seconds)},
+                          {said, emphasis_of(verdict)},
+                          {e->source, Emphasis::faint}});
+  }
+  page.table(table, "Nearest to the truth first. Cost: in products with K that take the same time.");
+}
+
+void add_scene(const ComparedScene& scene, Page& page) {
+  const timestep::Comparison& c = scene.comparison;
+  page.subsection(scene.name);
+  page.paragraph(fmt::format(
+      "{}, {}, {}. True critical step {:.6e} s, undamped, to a residual of {:.1e}; limit of the cycle with "
+      "its damping "
+      "{:.6e} s. The truth took {} products with K and {} s.",
+      counted(c.bodies, "ball", "balls"), counted(c.contacts, "acting contact", "acting contacts"),
+      counted(c.unknowns, "unknown", "unknowns"), c.truth.dt, c.truth.residual, c.truth.limit,
+      c.truth.products, three_digits(c.truth.seconds)));
+  std::vector<std::string> unsafe;
+  const Estimate* best = nullptr;
+  for (const Estimate& e : c.estimates) {
+    if (!e.safe) unsafe.push_back(e.name);
+    if (e.safe && e.claim == timestep::Claim::proven && (best == nullptr || e.dt > best->dt)) best = &e;
+  }
+  page.paragraph(fmt::format(
+      "{}{}",
+      unsafe.empty() ? "No estimate is unsafe here."
+                     : fmt::format("Unsafe here: {}.", fmt::join(unsafe, ", ")),
+      best == nullptr
+          ? std::string()
+          : fmt::format(" The longest proven step is that of {}: {} of the truth, at the cost of {} "
+                        "products.",
+                        best->name, ratio_text(best->ratio_to_true),
+                        three_digits(equivalent_products(scene, *best)))));
+  add_scene_picture(scene, page);
+  add_scene_table(scene, page);
+  std::vector<std::string> left_out;
+  for (const timestep::LeftOut& none : c.left_out)
+    left_out.push_back(none.name + " does not apply: " + none.reason);
+  page.list(left_out);
+}
+
+}  // namespace
+
+std::string page_of(const TimestepsReport& report) {
+  const std::vector<const ComparedScene*> scenes = compared(report);
+  Page page(
+      "Estimated against true critical timesteps",
+      fmt::format("{}, eigengrain {}", counted(static_cast<std::int64_t>(scenes.size()), "scene", "scenes"),
+                  EIGENGRAIN_VERSION));
+  page.paragraph(
+      "The explicit cycle is stable up to a step of 2/√λ, λ the largest eigenvalue of M⁻¹K of the whole "
+      "scene. Every "
+      "code estimates that step. Here each estimate stands beside the truth, with what it costs and whether "
+      "a run may "
+      "trust in it. Ratios are before any safety factor.");
+  std::vector<std::string> skipped;
+  for (const ComparedScene& scene : report.scenes)
+    if (!scene.skipped.empty())
+      skipped.push_back(fmt::format("Left out: {} ({}).", scene.name, scene.skipped));
+  page.list(skipped);
+  if (scenes.size() > 1) {
+    add_safety(report, page);
+    add_matrix(report, page);
+  }
+  add_run_lengths(report, page);
+  add_sizes(report.sizes, page);
+  if (!scenes.empty()) {
+    page.section(scenes.size() > 1 ? "Scene by scene" : "Error against cost");
+    page.picture(key_of_verdicts(), "");
+  }
+  for (const ComparedScene* scene : scenes) add_scene(*scene, page);
+  return page.finish();
+}
+
+}  // namespace eigengrain::app
