@@ -147,7 +147,7 @@ class Study {
     compare_with_twin(first);
     for (std::size_t k = 0; k < plans_.size(); ++k)
       result_.runs.push_back(run_of(plans_[k], k == 0 ? first : recorded(plans_[k])));
-    for (std::size_t k = 1; k < result_.runs.size(); ++k) find_orders(result_.runs[k - 1], result_.runs[k]);
+    for (std::size_t k = 1; k < result_.runs.size(); ++k) find_orders(half_of(k), result_.runs[k]);
     return result_;
   }
 
@@ -177,13 +177,15 @@ class Study {
     if (nearest < 1 || nearest > 2 || std::abs(about.order - nearest) > 0.1) return;
     about.extrapolated_order = nearest;
     const Course better = extrapolated(reference_, middle, nearest, cell_);
-    about.uncertainty = distance(better, extrapolated(middle, first, nearest, cell_), cell_);
+    // The next term of the expansion is of at least one order more.
+    about.uncertainty =
+        distance(better, extrapolated(middle, first, nearest, cell_), cell_) / (std::exp2(nearest + 1) - 1);
     reference_ = better;
   }
 
   void compare_with_twin(const Course& first) {
     const double shift = shift_of_twin * result_.mean_radius;
-    const Course twin = record(shifted(start_, shift), plans_.front(), false, false);
+    const Course twin = record(shifted(start_, shift), plans_.front(), with_ledger_, false);
     if (!twin.trouble.empty()) return;
     for (std::size_t s = 0; s < twin.places.size(); ++s) {
       Course one;
@@ -217,6 +219,13 @@ class Study {
       sum += std::pow(course.restitution[k] - reference_.restitution[k], 2);
     run.restitution = std::sqrt(sum / static_cast<double>(common));
     return run;
+  }
+
+  /// The run whose step is nearest to half of that of run k > 0: neighbours are too near for an order.
+  const StepRun& half_of(std::size_t k) const {
+    const auto off = [&](const StepRun& run) { return std::abs(std::log(2 * run.dt / result_.runs[k].dt)); };
+    return *std::min_element(result_.runs.begin(), result_.runs.begin() + static_cast<std::ptrdiff_t>(k),
+                             [&](const StepRun& a, const StepRun& b) { return off(a) < off(b); });
   }
 
   void find_orders(const StepRun& before, StepRun& run) const {

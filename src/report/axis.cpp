@@ -157,7 +157,7 @@ std::string number_text(double value) {
   const std::string sign = value < 0 ? "−" : "";
   if (exponent >= -4 && exponent < 5) {
     // Three digits, none behind the point that the value has not.
-    std::string plain = fmt::format("{:.{}f}", std::abs(value), std::max(0, 2 - exponent));
+    std::string plain = fmt::format("{:.{}f}", std::stod(scientific), std::max(0, 2 - exponent));
     if (plain.find('.') != std::string::npos) {
       plain.erase(plain.find_last_not_of('0') + 1);
       if (plain.back() == '.') plain.pop_back();

@@ -134,8 +134,8 @@ std::string svg_of(const Chart& chart) {
     for (const Point& point : guide.points) places.push_back(panel.place(point));
     svg.polyline(places, colour::ink, 1, "5 3");
     if (!places.empty())
-      svg.text({std::min(places.back().x, frame.right) - 4, places.back().y - 5}, guide.name, Align::end,
-               label_size, colour::grey);
+      svg.text({places.front().x + 6, places.front().y - 6}, guide.name, Align::start, label_size,
+               colour::grey);
   }
   for (const Series& series : chart.series) {
     if (!series.joined) continue;

@@ -19,9 +19,10 @@ h3 { font-size: 1.08em; margin: 1.6em 0 .3em }
 p.subtitle { color: #555; margin-top: 0 }
 figure { margin: 1em 0; break-inside: avoid }
 figure svg { max-width: 100%; height: auto; display: block }
+svg text { paint-order: stroke; stroke: #fff; stroke-width: 2.5px; stroke-linejoin: round }
 figcaption { font-size: .9em; color: #444; margin-top: .3em }
-table { border-collapse: collapse; font: 12px/1.3 sans-serif; margin: .8em 0 1.2em }
-caption { text-align: left; font: 13.5px/1.4 Georgia, serif; color: #444; padding-bottom: .3em }
+table { border-collapse: collapse; font: 12px/1.3 sans-serif; margin: .3em 0 1.2em }
+p.caption { font-size: .9em; color: #444; margin: 1.2em 0 .2em; break-after: avoid }
 th, td { padding: .15em .6em; text-align: left; vertical-align: baseline; border-bottom: 1px solid #ddd }
 thead th { border-bottom: 1px solid #222; font-weight: 600; vertical-align: bottom }
 th.n, td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
@@ -85,8 +86,8 @@ void Page::picture(const std::string& svg, std::string_view caption) {
 }
 
 void Page::table(const Table& table, std::string_view caption) {
+  if (!caption.empty()) body_ += fmt::format("<p class=\"caption\">{}</p>\n", escaped(caption));
   body_ += "<div class=\"wide\"><table>\n";
-  if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>\n", escaped(caption));
   body_ += "<thead><tr>";
   for (const Table::Column& column : table.columns) {
     const std::string name = escaped(column.name);

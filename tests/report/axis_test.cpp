@@ -101,6 +101,7 @@ TEST(NumberText, IsAsOneWrites) {
   EXPECT_EQ(number_text(-1.5), "−1.5");
   EXPECT_EQ(number_text(1.5e-7), "1.5×10⁻⁷");
   EXPECT_EQ(number_text(1e6), "10⁶");
+  EXPECT_EQ(number_text(82987), "83000");
   EXPECT_EQ(number_text(0.9999), "1");
   EXPECT_EQ(number_text(100), "100");
   EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "∞");

@@ -43,8 +43,8 @@ struct StepRun {
   double mean_restitution = unknown;  ///< of these impacts
   Statistics statistics;
   std::string trouble;  ///< how the run blew up; empty: it did not
-  /// Observed orders against the run before, ln(error ratio)/ln(dt ratio); none where one of the two errors
-  /// is not well above that of the reference.
+  /// Observed orders ln(error ratio)/ln(dt ratio) against the run with about half the step; none where one of
+  /// the two errors is not well above that of the reference.
   std::optional<double> trajectory_order{};
   std::optional<double> energy_order{};
   std::optional<double> restitution_order{};
@@ -64,8 +64,8 @@ struct StepReference {
 struct Sensitivity {
   double growth = 1;     ///< largest distance at a sample over that of the start
   Statistics departure;  ///< |difference| of the two runs
-  /// Trajectories say nothing of the step any more: rounding alone would part them sooner or later.
-  bool chaotic() const { return growth > 1e4; }
+  /// The shift has become more than a hundredth of a radius: trajectories say nothing of the step any more.
+  bool chaotic() const { return growth > 1e8; }
 };
 
 struct StepStudy {

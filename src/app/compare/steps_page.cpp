@@ -48,23 +48,31 @@ constexpr std::array errors{
     Error{"restitution",
           [](const StepRun& r, const StepStudy&) { return r.restitution; },
           {Mark::triangle, report::colour::vermilion, true}}};
-constexpr Error kinetic_error{"mean kinetic energy",
-                              [](const StepRun& r, const StepStudy& s) {
-                                return std::abs(r.statistics.kinetic / s.reference.statistics.kinetic - 1);
-                              },
-                              {Mark::cross, report::colour::purple, false}};
+/// Of what is left where trajectories have parted.
+constexpr std::array statistical_errors{
+    Error{"mean kinetic energy",
+          [](const StepRun& r, const StepStudy& s) {
+            return std::abs(r.statistics.kinetic / s.reference.statistics.kinetic - 1);
+          },
+          {Mark::circle, report::colour::blue, true}},
+    Error{"mean elastic energy",
+          [](const StepRun& r, const StepStudy& s) {
+            return std::abs(r.statistics.elastic / s.reference.statistics.elastic - 1);
+          },
+          {Mark::diamond, report::colour::green, true}},
+    Error{"mean force at the end",
+          [](const StepRun& r, const StepStudy& s) {
+            return std::abs(r.statistics.contact_force / s.reference.statistics.contact_force - 1);
+          },
+          {Mark::cross, report::colour::purple, false}}};
 
 /// Below this nothing but rounding is seen.
 constexpr double least_drawn = 1e-14;
 
 std::vector<Error> errors_of(const StepStudy& study) {
-  std::vector<Error> drawn;
-  for (const Error& error : errors) {
-    const bool trajectory = &error - errors.data() < 2;
-    if (trajectory && study.sensitivity.chaotic()) continue;
-    drawn.push_back(error);
-  }
-  drawn.push_back(kinetic_error);
+  const bool chaotic = study.sensitivity.chaotic();
+  std::vector<Error> drawn(errors.begin() + (chaotic ? 2 : 0), errors.end());
+  if (chaotic) drawn.insert(drawn.end(), statistical_errors.begin(), statistical_errors.end());
   return drawn;
 }
 
@@ -72,7 +80,7 @@ void add_error_picture(const StepStudy& study, Page& page) {
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
   report::Chart chart{.title = "Errors against the step",
-                      .x = Axis::logarithmic(study.runs.front().fraction, study.runs.back().fraction),
+                      .x = Axis::logarithmic(1.01 * study.runs.front().fraction, study.runs.back().fraction),
                       .y = Axis::logarithmic(1, 10),
                       .x_name = "step as a part of the limit",
                       .y_name = "relative error",
@@ -101,12 +109,19 @@ void add_error_picture(const StepStudy& study, Page& page) {
     }
     chart.guides.push_back({fmt::format("order {}", order), {{x_start, start}, {chart.x.high(), end}}});
   }
+  const char* paths =
+      "Trajectory and final state: root mean square distance of the balls from the reference, over the mean "
+      "radius. ";
+  const char* means =
+      "Trajectories have parted and are left out; means are those of the run and, for the force, of its end, "
+      "against those of the smallest step. ";
   page.picture(
       svg_of(chart),
-      "Errors against the step. Trajectory and final state: root mean square distance of the balls from the "
-      "reference, over the mean radius. Energy balance: largest imbalance of the energy ledger, over the "
-      "largest energy in motion and springs. Restitution: root mean square error over the impacts. Kinetic "
-      "energy: of its mean over the run. Dashed: orders 1 and 2.");
+      fmt::format(
+          "Errors against the step. {}Energy balance: largest imbalance of the energy ledger, over the "
+          "largest energy in motion and springs. Restitution: root mean square error over the impacts. "
+          "Dashed: orders 1 and 2.",
+          study.sensitivity.chaotic() ? means : paths));
 }
 
 void add_time_picture(const StepStudy& study, Page& page) {
@@ -173,7 +188,8 @@ void add_error_table(const StepStudy& study, Page& page) {
     table.rows.push_back(std::move(row));
   }
   page.table(table,
-             "Errors, with the order observed against the line above. ·: the scene has no such thing, or the "
+             "Errors, with the order observed against the run with about half the step. ·: the scene has no "
+             "such thing, or the "
              "error is too near to that of the reference to tell an order.");
 }
 
@@ -204,7 +220,7 @@ void add_statistics(const StepStudy& study, Page& page) {
       table,
       "Means over the run of kinetic and elastic energy; at the end the mean force of the acting contacts, "
       "their number, and the height of the centre of mass. Last line: by how much a shift of all balls by "
-      "1e-10 of a radius changes each.");
+      "10⁻¹⁰ of a radius changes each.");
 }
 
 std::string verdict(const StepStudy& study) {
@@ -215,7 +231,7 @@ std::string verdict(const StepStudy& study) {
   if (largest == nullptr) return text;
   if (study.sensitivity.chaotic())
     text = fmt::format(
-        "The motion is chaotic: a shift of all balls by 1e-10 of a radius grows {} times within the run. "
+        "The motion is chaotic: a shift of all balls by 10⁻¹⁰ of a radius grows {} times within the run. "
         "Trajectories "
         "then say nothing of the step; statistics do. ",
         number_text(study.sensitivity.growth));
