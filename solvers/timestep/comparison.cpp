@@ -41,7 +41,8 @@ const Estimate* find_estimate(const Comparison& comparison, std::string_view nam
   return nullptr;
 }
 
-Comparison compare(const assembly::Model& model, const TruthOptions& options) {
+Comparison compare(const assembly::Model& model, const TruthOptions& options,
+                   std::span<const model::Material> materials) {
   const assembly::LinearSystem system(model);
   Comparison result{.bodies = model.bodies.size(),
                     .contacts = static_cast<std::int64_t>(system.elements.size()),
@@ -50,7 +51,7 @@ Comparison compare(const assembly::Model& model, const TruthOptions& options) {
                     .truth = critical_timestep(system, assembly::largest_damping(model), options),
                     .estimates = {},
                     .left_out = {}};
-  for (const Estimator& estimator : estimators()) judge(estimator, {model, system}, result);
+  for (const Estimator& estimator : estimators()) judge(estimator, {model, system, materials}, result);
   return result;
 }
 

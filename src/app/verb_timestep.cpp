@@ -49,7 +49,7 @@ ordered_json number(double value) {
 
 ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
   ordered_json estimates = ordered_json::array();
-  for (const Estimate& e : c.estimates)
+  for (const Estimate& e : c.estimates) {
     estimates.push_back({{"name", e.name},
                          {"dt", number(e.dt)},
                          {"ratio_to_true", number(e.ratio_to_true)},
@@ -58,6 +58,12 @@ ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
                          {"source", e.source},
                          {"seconds", e.seconds},
                          {"products", e.products}});
+    if (e.claim == timestep::Claim::probable) estimates.back()["failure"] = e.failure;
+    if (e.range) estimates.back()["range"] = {number(e.range->least), number(e.range->largest)};
+  }
+  ordered_json left_out = ordered_json::array();
+  for (const timestep::LeftOut& none : c.left_out)
+    left_out.push_back({{"name", none.name}, {"reason", none.reason}});
   return {{"bodies", c.bodies},
           {"contacts", c.contacts},
           {"unknowns", c.unknowns},
@@ -71,6 +77,7 @@ ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
             {"seconds", c.truth.seconds},
             {"products", c.truth.products}}},
           {"estimates", estimates},
+          {"left_out", left_out},
           {"policy",
            {{"dt", number(policy.dt)},
             {"ratio_to_limit", number(policy.dt / c.truth.limit)},
@@ -95,6 +102,16 @@ std::string damping_text(const assembly::Model& model) {
                                       : fmt::format("with the largest local damping, {:g}, for all", alpha);
 }
 
+/// What is to be thought of an estimate.
+std::string verdict(const Estimate& e) {
+  if (!e.safe) return "UNSAFE";
+  if (e.claim == timestep::Claim::proven) return "safe (proven)";
+  if (e.claim == timestep::Claim::probable) return fmt::format("safe (but for {:.0e})", e.failure);
+  return e.range ? fmt::format("{:.4f} to {:.4f}", e.range->least / e.dt * e.ratio_to_true,
+                               e.range->largest / e.dt * e.ratio_to_true)
+                 : "safe here";
+}
+
 void print(const assembly::State& state, const Comparison& c, const PolicyStep& policy) {
   const model::Scene& scene = state.settings;
   fmt::print("{}: {}, {}, {}\n", scene.name, counted(c.bodies, "ball", "balls"),
@@ -109,15 +126,15 @@ void print(const assembly::State& state, const Comparison& c, const PolicyStep& 
     fmt::print("\nNothing resists a motion here, so no timestep is critical.\n");
     return;
   }
-  fmt::print("\n{:<20} {:>14} {:>9}  {:<22} {:>9} {:>9}\n", "critical timestep", "dt [s]", "of true", "",
+  fmt::print("\n{:<22} {:>14} {:>9}  {:<22} {:>9} {:>9}\n", "critical timestep", "dt [s]", "of true", "",
              "seconds", "products");
-  fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", "true", c.truth.dt, 1.0,
+  fmt::print("{:<22} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", "true", c.truth.dt, 1.0,
              fmt::format("residual {:.1e}", c.truth.residual), c.truth.seconds, c.truth.products);
   for (const Estimate& e : c.estimates)
-    fmt::print("{:<20} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", e.name, e.dt, e.ratio_to_true,
-               !e.safe ? "UNSAFE" : (e.claim == timestep::Claim::proven ? "safe (proven)" : "safe here"),
-               e.seconds, e.products);
-  fmt::print("{:<20} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit,
+    fmt::print("{:<22} {:>14.8e} {:>9.4f}  {:<22} {:>9.2g} {:>9}\n", e.name, e.dt, e.ratio_to_true,
+               verdict(e), e.seconds, e.products);
+  for (const timestep::LeftOut& none : c.left_out) fmt::print("{:<22} none: {}\n", none.name, none.reason);
+  fmt::print("{:<22} {:>14.8e} {:>9.4f}  {}\n", "limit of the cycle", c.truth.limit,
              c.truth.limit / c.truth.dt, damping_text(state.model));
   print_policy(policy, c);
 }
@@ -129,7 +146,7 @@ void timestep(const Options& options) {
   assembly::State state = read_input(options).state;
   if (state.settings.mass_scaling && state.next_dt == 0) cycle::scale_masses(state);
   petsc::start();  // before the clocks of the comparison
-  const Comparison comparison = timestep::compare(state.model);
+  const Comparison comparison = timestep::compare(state.model, {}, state.settings.materials);
   if (!options.petsc.empty()) petsc::require_options_used();
   const PolicyStep policy = policy_step(state);
   ordered_json report = to_json(comparison, policy);

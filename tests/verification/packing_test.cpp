@@ -23,9 +23,9 @@ TEST(Packing10k, HasTheFiguresOfAnIndependentProgram) {
   EXPECT_NEAR(c.truth.dt / 6.009301982060347e-5, 1, 1e-8);
   ASSERT_EQ(c.estimates.at(0).name, "diagonal");
   EXPECT_NEAR(c.estimates[0].dt / 3.494575352889191e-5, 1, 1e-8);
-  for (const timestep::Estimate& e : c.estimates) EXPECT_TRUE(e.safe) << e.name;
   // Three sweeps prove 0.93 and more of the true step in dense packings.
-  EXPECT_GT(c.estimates.back().ratio_to_true, 0.93);
+  EXPECT_TRUE(timestep::find_estimate(c, "scaled-block-bound")->safe);
+  EXPECT_GT(timestep::find_estimate(c, "scaled-block-bound")->ratio_to_true, 0.93);
   EXPECT_FALSE(c.truth.certified);
 }
 
@@ -45,7 +45,9 @@ TEST(Packing100k, IsCompared) {
   EXPECT_LT(c.truth.residual, 1e-8);
   EXPECT_EQ(c.set_aside, 1);
   for (const timestep::Estimate& e : c.estimates) {
-    EXPECT_TRUE(e.safe) << e.name;
+    if (e.claim != timestep::Claim::none) {
+      EXPECT_TRUE(e.safe) << e.name;
+    }
     EXPECT_GT(e.ratio_to_true, 0.55) << e.name;
   }
 }

@@ -24,9 +24,9 @@ enum class Listed { acting, all };
 /// the overlap depend on it.
 inline constexpr double typical_overlap = 1e-3;
 
-/// Calls visit(law, element) for every contact, group after group, in the order of the contacts. An end at a
-/// ball of a clump is one at the clump's holder, with the lever from the clump's centre. Cost O(contacts);
-/// nothing is allocated here.
+/// Calls visit(law, element), or visit(law, element, pair), for every contact, group after group, in the
+/// order of the contacts. An end at a ball of a clump is one at the clump's holder, with the lever from the
+/// clump's centre. Cost O(contacts); nothing is allocated here.
 template <class Visit>
 void for_each_element(const Model& model, Listed which, const Visit& visit) {
   const contact::Placement placement = model.placement();
@@ -60,7 +60,11 @@ void for_each_element(const Model& model, Listed which, const Visit& visit) {
           element.b = model.bodies.clumps.owner(element.b);
         }
       }
-      visit(group.law, element);
+      if constexpr (std::is_invocable_v<const Visit&, decltype(group.law), const contact::ContactElement&,
+                                        const contact::Pair&>)
+        visit(group.law, element, group.pairs[c]);
+      else
+        visit(group.law, element);
     }
   });
 }

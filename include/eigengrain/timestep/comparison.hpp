@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,9 @@ struct Comparison {
 const Estimate* find_estimate(const Comparison& comparison, std::string_view name);
 
 /// The true critical timestep of the model as it stands, and every estimate beside it.
-Comparison compare(const assembly::Model& model, const TruthOptions& options = {});
+///
+/// materials  of the scene; without them the estimates that ask for moduli are left out
+Comparison compare(const assembly::Model& model, const TruthOptions& options = {},
+                   std::span<const model::Material> materials = {});
 
 }  // namespace eigengrain::timestep

@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/model/material.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -25,6 +26,8 @@ std::string_view name_of(Claim claim);
 struct Question {
   const assembly::Model& model;
   const assembly::LinearSystem& system;
+  /// Of the scene, for rules that ask for moduli; empty: they are left out.
+  std::span<const model::Material> materials{};
 };
 
 /// Least and largest value of an estimate that depends on the frame, over orientations of the frame, s.

@@ -104,13 +104,13 @@ void compare(const Options& options, ComparedScene& scene) {
     scene.skipped = "nothing touches that could move, so no step is critical";
     return;
   }
-  scene.comparison = timestep::compare(state.model);
+  scene.comparison = timestep::compare(state.model, {}, state.settings.materials);
   if (!std::isfinite(scene.comparison.truth.dt)) {
     scene.skipped = "nothing resists a motion, so no step is critical";
     return;
   }
   scene.product_seconds = seconds_of_product(system);
-  measure_again(state.model, system, scene.comparison);
+  measure_again({state.model, system, state.settings.materials}, scene.comparison);
   scene.policies = steps_of_policies(state, scene.comparison.truth.limit);
 }
 
@@ -157,14 +157,13 @@ std::vector<ComparedScene> compare_scenes(const Options& options) {
   return scenes;
 }
 
-void measure_again(const assembly::Model& model, const assembly::LinearSystem& system,
-                   timestep::Comparison& comparison) {
+void measure_again(const timestep::Question& question, timestep::Comparison& comparison) {
   for (timestep::Estimate& estimate : comparison.estimates) {
     const timestep::Estimator* estimator = timestep::find_estimator(estimate.name);
     double total = estimate.seconds;
     for (int k = 0; k < most_calls && total < enough_time; ++k) {
       const Stopwatch watch;
-      estimator->find({model, system});
+      estimator->find(question);
       const double seconds = watch.seconds();
       estimate.seconds = std::min(estimate.seconds, seconds);
       total += seconds;

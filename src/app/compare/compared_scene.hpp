@@ -43,8 +43,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& arguments);
 std::vector<ComparedScene> compare_scenes(const Options& options);
 
 /// Asks short estimates again for their time: the least of some calls, as for a product.
-void measure_again(const assembly::Model& model, const assembly::LinearSystem& system,
-                   timestep::Comparison& comparison);
+void measure_again(const timestep::Question& question, timestep::Comparison& comparison);
 
 /// Seconds of one product with M^-½ K M^-½: the least of some.
 double seconds_of_product(const assembly::LinearSystem& system);

@@ -24,7 +24,7 @@ model::Scene packing_of(std::int64_t balls) {
   const generate::PeriodicBalls made = generate::jittered_lattice(balls, random);
   model::Scene scene;
   scene.name = fmt::format("{} balls", made.balls.position.size());
-  scene.materials.push_back({"grain", density});
+  scene.materials.push_back({.name = "grain", .density = density});
   // kn, ks in N/m, friction: as in the packings of examples/
   scene.contacts.push_back({.law = "linear", .parameters = {1e5, 5e4, 0.5}});
   scene.cell = made.region.cell();
@@ -57,10 +57,11 @@ std::vector<CostOfSize> costs_by_size(const std::vector<std::int64_t>& sizes) {
   std::vector<CostOfSize> costs;
   for (const std::int64_t size : sorted) {
     const Stopwatch watch;
-    const assembly::Model model = assembly::build_model(packing_of(size));
+    const model::Scene scene = packing_of(size);
+    const assembly::Model model = assembly::build_model(scene);
     const assembly::LinearSystem system(model);
-    timestep::Comparison found = timestep::compare(model);
-    measure_again(model, system, found);
+    timestep::Comparison found = timestep::compare(model, {}, scene.materials);
+    measure_again({model, system, scene.materials}, found);
     CostOfSize& cost = costs.emplace_back();
     cost.bodies = found.bodies;
     cost.contacts = found.contacts;
