@@ -108,6 +108,14 @@ Axis Axis::logarithmic(double low, double high) {
   return axis;
 }
 
+Axis Axis::logarithmic_with_margins(double low, double high) {
+  const double margin = std::pow(high / low, 0.03);
+  if (!(low > 0) || !(margin > 1) || !std::isfinite(margin)) return logarithmic(low, high);
+  Axis axis(Kind::logarithmic, low / margin, high * margin);
+  axis.ticks_ = logarithmic_ticks(axis.low_, axis.high_);
+  return axis;
+}
+
 Axis Axis::signed_distance(double low, double high, double nearest) {
   const auto widened = [&](double size) {
     return std::max(nearest, decade(static_cast<int>(std::ceil(std::log10(size) - rounding))));

@@ -17,6 +17,8 @@ class Axis {
   static Axis linear(double low, double high);
   /// Values above 0, in decades; widened to 1, 2 or 5 times a power of ten.
   static Axis logarithmic(double low, double high);
+  /// The same with a little room at both ends instead.
+  static Axis logarithmic_with_margins(double low, double high);
   /// A part of one that is too much (> 0) or too little (< 0): logarithmic both ways from 0, and linear up to
   /// `nearest` about it. Widened to powers of ten; of what is too little no more than -1 is possible. Labels
   /// are percent.

@@ -9,8 +9,9 @@
 namespace eigengrain::report {
 namespace {
 
-constexpr double label_size = 10.5;
-constexpr double label_height = 13;
+constexpr double label_size = text_size;
+constexpr double label_height = 13.5;
+constexpr double name_size = 11.5;
 constexpr double baseline = 3.5;  // from the middle of a text to where it stands
 
 bool is_drawn(const Point& point) {
@@ -34,27 +35,33 @@ class Panel {
 };
 
 void draw_x_axis(const Axis& axis, const std::string& name, const Box& frame, Svg& svg) {
+  std::vector<Line> grid;
+  std::vector<Line> ticks;
   for (const Tick& tick : axis.ticks()) {
     const double x = frame.left + axis.place(tick.value) * frame.width();
-    if (!tick.label.empty()) {
-      svg.line({x, frame.top}, {x, frame.bottom}, colour::faint, 0.6);
-      svg.text({x, frame.bottom + 16}, tick.label, Align::middle);
-    }
-    svg.line({x, frame.bottom}, {x, frame.bottom + (tick.label.empty() ? 3 : 5)}, colour::ink, 0.8);
+    ticks.push_back({{x, frame.bottom}, {x, frame.bottom + (tick.label.empty() ? 3 : 5)}});
+    if (tick.label.empty()) continue;
+    grid.push_back({{x, frame.top}, {x, frame.bottom}});
+    svg.text({x, frame.bottom + 16}, tick.label, Align::middle);
   }
-  svg.text({0.5 * (frame.left + frame.right), frame.bottom + 34}, name, Align::middle, 11.5);
+  svg.lines(grid, colour::faint, 0.6);
+  svg.lines(ticks, colour::ink, 0.8);
+  svg.text({0.5 * (frame.left + frame.right), frame.bottom + 34}, name, Align::middle, name_size);
 }
 
 void draw_y_axis(const Axis& axis, const std::string& name, const Box& frame, Svg& svg) {
+  std::vector<Line> grid;
+  std::vector<Line> ticks;
   for (const Tick& tick : axis.ticks()) {
     const double y = frame.bottom - axis.place(tick.value) * frame.height();
-    if (!tick.label.empty()) {
-      svg.line({frame.left, y}, {frame.right, y}, colour::faint, 0.6);
-      svg.text({frame.left - 8, y + baseline}, tick.label, Align::end);
-    }
-    svg.line({frame.left - (tick.label.empty() ? 3 : 5), y}, {frame.left, y}, colour::ink, 0.8);
+    ticks.push_back({{frame.left - (tick.label.empty() ? 3 : 5), y}, {frame.left, y}});
+    if (tick.label.empty()) continue;
+    grid.push_back({{frame.left, y}, {frame.right, y}});
+    svg.text({frame.left - 8, y + baseline}, tick.label, Align::end);
   }
-  svg.text({14, 0.5 * (frame.top + frame.bottom)}, name, Align::middle, 11.5, colour::ink, -90);
+  svg.lines(grid, colour::faint, 0.6);
+  svg.lines(ticks, colour::ink, 0.8);
+  svg.text({14, 0.5 * (frame.top + frame.bottom)}, name, Align::middle, name_size, colour::ink, -90);
 }
 
 double widest(const std::vector<std::string>& texts) {
@@ -79,11 +86,13 @@ void draw_line_names(const Chart& chart, const Panel& panel, Svg& svg) {
   std::transform(ends.begin(), ends.end(), heights.begin(), [](const End& end) { return end.place.y; });
   const Box& frame = panel.frame();
   const std::vector<double> placed = spread(heights, label_height, frame.top, frame.bottom);
+  std::vector<Line> leaders;
   for (std::size_t k = 0; k < ends.size(); ++k) {
     const Place at{frame.right + 22, placed[k]};
-    svg.line({ends[k].place.x + 6, ends[k].place.y}, {at.x - 4, at.y}, colour::grey, 0.5);
-    svg.text({at.x, at.y + baseline}, ends[k].series->name, Align::start, label_size);
+    leaders.push_back({{ends[k].place.x + 6, ends[k].place.y}, {at.x - 4, at.y}});
+    svg.text({at.x, at.y + baseline}, ends[k].series->name);
   }
+  svg.lines(leaders, colour::grey, 0.5);
 }
 
 void draw_mark_names(const Chart& chart, const Panel& panel, Svg& svg) {
@@ -103,14 +112,12 @@ void draw_mark_names(const Chart& chart, const Panel& panel, Svg& svg) {
       }
     }
   const auto labels = place_labels(wishes, panel.frame().grown(-2), obstacles);
-  for (std::size_t k = 0; k < labels.size(); ++k) {
-    if (!labels[k]) continue;
-    if (labels[k]->leader) svg.line(wishes[k].mark, labels[k]->anchor, colour::grey, 0.5);
-  }
+  std::vector<Line> leaders;
   for (std::size_t k = 0; k < labels.size(); ++k)
-    if (labels[k])
-      svg.text({labels[k]->box.left + 1, labels[k]->box.bottom - 3.2}, named[k]->name, Align::start,
-               label_size);
+    if (labels[k] && labels[k]->leader) leaders.push_back({wishes[k].mark, labels[k]->anchor});
+  svg.lines(leaders, colour::grey, 0.5);
+  for (std::size_t k = 0; k < labels.size(); ++k)
+    if (labels[k]) svg.text({labels[k]->box.left + 1, labels[k]->box.bottom - 3.4}, named[k]->name);
 }
 
 }  // namespace
@@ -190,10 +197,10 @@ std::string svg_of(const StripChart& chart) {
   for (const Strip& strip : chart.strips) {
     svg.line({frame.left, y}, {frame.right, y}, colour::faint, 0.6);
     svg.text({frame.left - 8, y + baseline}, strip.name, Align::end, label_size);
+    for (const Strip::Value& value : strip.values)
+      if (std::isfinite(value.x)) svg.mark({along(value.x), y}, value.look, 3);
     if (strip.middle)
       svg.line({along(*strip.middle), y - 7}, {along(*strip.middle), y + 7}, colour::ink, 2.4);
-    for (const Strip::Value& value : strip.values)
-      if (std::isfinite(value.x)) svg.mark({along(value.x), y}, value.look, 3.2);
     y += row;
   }
   return svg.finish();

@@ -11,6 +11,11 @@ struct Place {
   double y = 0;
 };
 
+struct Line {
+  Place from;
+  Place to;
+};
+
 struct Box {
   double left = 0;
   double top = 0;

@@ -28,11 +28,6 @@ Place nearest(const Box& box, const Place& to) {
   return {std::clamp(to.x, box.left, box.right), std::clamp(to.y, box.top, box.bottom)};
 }
 
-struct Line {
-  Place from;
-  Place to;
-};
-
 class Board {
  public:
   Board(std::span<const LabelWish> wishes, const Box& frame, std::span<const Box> obstacles)

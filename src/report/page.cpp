@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view style = R"(
 @page { margin: 16mm }
-body { font: 15px/1.45 Georgia, "Times New Roman", serif; color: #222; max-width: 54em; margin: 2em auto; padding: 0 1em }
+body { font: 15px/1.45 Georgia, "Times New Roman", serif; color: #222; max-width: 58em; margin: 2em auto; padding: 0 1em }
 h1 { font-size: 1.9em; line-height: 1.15; margin: 0 0 .2em }
 h2 { font-size: 1.35em; margin: 2em 0 .4em; border-top: 1px solid #222; padding-top: .5em }
 h3 { font-size: 1.08em; margin: 1.6em 0 .3em }
@@ -27,7 +27,7 @@ th, td { padding: .15em .6em; text-align: left; vertical-align: baseline; border
 thead th { border-bottom: 1px solid #222; font-weight: 600; vertical-align: bottom }
 th.n, td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
 th.u { padding: .3em .1em } th.u span { writing-mode: vertical-rl; transform: rotate(180deg); white-space: nowrap }
-td.u { padding: .15em .3em }
+td.u { padding: .2em .25em; font-size: 11px } td:first-child { white-space: nowrap }
 tbody tr { break-inside: avoid } thead { display: table-header-group }
 .f { color: #767676 } .g { color: #0072B2 } .b { color: #a84300; font-weight: 700 }
 .wide { overflow-x: auto }

@@ -48,6 +48,13 @@ std::string dashes(std::string_view dash) {
   return dash.empty() ? std::string() : fmt::format(" stroke-dasharray=\"{}\"", dash);
 }
 
+/// An attribute, or nothing where the value is what the whole picture has.
+std::string unless(std::string_view usual, std::string_view name, std::string_view value) {
+  return value == usual ? std::string() : fmt::format(" {}=\"{}\"", name, value);
+}
+
+constexpr double line_width_of_marks = 1.4;
+
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -86,13 +93,21 @@ double text_width(std::string_view text, double size) {
 }
 
 Svg::Svg(double width, double height, std::string_view title)
-    : body_(fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-                        "height=\"{1}\" role=\"img\" font-family=\"sans-serif\">\n<title>{2}</title>\n",
-                        number(width), number(height), escaped(title))) {}
+    : body_(
+          fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+                      "height=\"{1}\" role=\"img\" font-family=\"sans-serif\" font-size=\"{2}\" fill=\"{3}\" "
+                      "stroke-width=\"{4}\">\n<title>{5}</title>\n",
+                      number(width), number(height), number(text_size), colour::ink, line_width_of_marks,
+                      escaped(title))) {}
 
-void Svg::line(const Place& a, const Place& b, std::string_view colour, double width, std::string_view dash) {
-  body_ += fmt::format("<path d=\"M{} {}L{} {}\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n", number(a.x),
-                       number(a.y), number(b.x), number(b.y), colour, number(width), dashes(dash));
+void Svg::lines(const std::vector<Line>& all, std::string_view colour, double width, std::string_view dash) {
+  if (all.empty()) return;
+  std::string path;
+  for (const Line& line : all)
+    path += fmt::format("M{} {}L{} {}", number(line.from.x), number(line.from.y), number(line.to.x),
+                        number(line.to.y));
+  body_ += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"{}\"{}/>\n", path, colour, number(width),
+                       dashes(dash));
 }
 
 void Svg::polyline(std::span<const Place> places, std::string_view colour, double width,
@@ -113,44 +128,43 @@ void Svg::rectangle(const Box& box, std::string_view fill, std::string_view edge
 
 void Svg::text(const Place& at, std::string_view text, Align align, double size, std::string_view colour,
                double turned) {
-  const std::string_view anchor = align == Align::start ? "" : align == Align::middle ? "middle" : "end";
-  body_ += fmt::format(
-      "<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{}\"{}{}>{}</text>\n", number(at.x), number(at.y),
-      number(size), colour, anchor.empty() ? std::string() : fmt::format(" text-anchor=\"{}\"", anchor),
-      turned == 0
-          ? std::string()
-          : fmt::format(" transform=\"rotate({} {} {})\"", number(turned), number(at.x), number(at.y)),
-      escaped(text));
+  const std::string_view anchor = align == Align::start ? "start" : align == Align::middle ? "middle" : "end";
+  std::string attributes = unless(number(text_size), "font-size", number(size)) +
+                           unless(colour::ink, "fill", colour) + unless("start", "text-anchor", anchor);
+  if (turned != 0)
+    attributes += fmt::format(" transform=\"rotate({} {} {})\"", number(turned), number(at.x), number(at.y));
+  body_ += fmt::format("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", number(at.x), number(at.y), attributes,
+                       escaped(text));
 }
 
 void Svg::mark(const Place& at, const Look& look, double size) {
-  std::string path;
   const auto around = [&](double dx, double dy) {
-    return fmt::format("{} {}", number(at.x + dx), number(at.y + dy));
+    return fmt::format("{} {}", number(at.x + size * dx), number(at.y + size * dy));
   };
-  const double s = size;
+  const std::string paint = look.filled && look.mark != Mark::cross
+                                ? unless(colour::ink, "fill", look.colour)
+                                : fmt::format(" fill=\"#fff\" stroke=\"{}\"", look.colour);
+  std::string path;
   switch (look.mark) {
     case Mark::circle:
-      body_ += fmt::format(
-          "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"1.4\"/>\n",
-          number(at.x), number(at.y), number(s), look.filled ? look.colour : "white", look.colour);
+      body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}/>\n", number(at.x), number(at.y),
+                           number(1.15 * size), paint);
       return;
     case Mark::diamond:
-      path = "M" + around(0, -1.3 * s) + "L" + around(1.3 * s, 0) + "L" + around(0, 1.3 * s) + "L" +
-             around(-1.3 * s, 0) + "Z";
+      path =
+          "M" + around(0, -1.5) + "L" + around(1.5, 0) + "L" + around(0, 1.5) + "L" + around(-1.5, 0) + "Z";
       break;
     case Mark::square:
-      path = "M" + around(-s, -s) + "L" + around(s, -s) + "L" + around(s, s) + "L" + around(-s, s) + "Z";
+      path = "M" + around(-1, -1) + "L" + around(1, -1) + "L" + around(1, 1) + "L" + around(-1, 1) + "Z";
       break;
     case Mark::triangle:
-      path = "M" + around(0, -1.3 * s) + "L" + around(1.2 * s, s) + "L" + around(-1.2 * s, s) + "Z";
+      path = "M" + around(0, -1.4) + "L" + around(1.35, 1.1) + "L" + around(-1.35, 1.1) + "Z";
       break;
     case Mark::cross:
-      path = "M" + around(-s, -s) + "L" + around(s, s) + "M" + around(-s, s) + "L" + around(s, -s);
+      path = "M" + around(-1, -1) + "L" + around(1, 1) + "M" + around(-1, 1) + "L" + around(1, -1);
       break;
   }
-  body_ += fmt::format("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"1.4\"/>\n", path,
-                       look.filled && look.mark != Mark::cross ? look.colour : "white", look.colour);
+  body_ += fmt::format("<path d=\"{}\"{}/>\n", path, paint);
 }
 
 }  // namespace eigengrain::report

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 /// Pictures as SVG that stands in an HTML page.
 namespace eigengrain::report {
@@ -38,17 +39,24 @@ struct Look {
 
 enum class Align { start, middle, end };
 
+inline constexpr double text_size = 11;
+
 class Svg {
  public:
   /// title  what the picture shows, for those who cannot see it
   Svg(double width, double height, std::string_view title);
 
   void line(const Place& a, const Place& b, std::string_view colour, double width = 1,
-            std::string_view dash = {});
+            std::string_view dash = {}) {
+    lines({{a, b}}, colour, width, dash);
+  }
+  /// Many lines of one look, as one element.
+  void lines(const std::vector<Line>& all, std::string_view colour, double width = 1,
+             std::string_view dash = {});
   void polyline(std::span<const Place> places, std::string_view colour, double width = 1.2,
                 std::string_view dash = {});
   void rectangle(const Box& box, std::string_view fill, std::string_view edge = "none");
-  void text(const Place& at, std::string_view text, Align align = Align::start, double size = 11,
+  void text(const Place& at, std::string_view text, Align align = Align::start, double size = text_size,
             std::string_view colour = colour::ink, double turned = 0);
   void mark(const Place& at, const Look& look, double size = 4);
 

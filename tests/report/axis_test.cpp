@@ -60,6 +60,14 @@ TEST(Axis, LogarithmicTakesWhatHasNoLogarithm) {
   }
 }
 
+TEST(Axis, LogarithmicWithMarginsKeepsTheEndsNear) {
+  const Axis axis = Axis::logarithmic_with_margins(108, 10648);
+  EXPECT_EQ(written(axis), (Labels{"100", "200", "500", "1000", "2000", "5000", "10000"}));
+  EXPECT_NEAR(axis.place(108), 0.03 / 1.06, 1e-12);
+  EXPECT_NEAR(axis.place(10648), 1.03 / 1.06, 1e-12);
+  EXPECT_GT(Axis::logarithmic_with_margins(5, 5).high(), 5);
+}
+
 TEST(Axis, TicksAreInsideAndIncrease) {
   for (double low = 1e-9; low < 1e9; low *= 3.7)
     for (double length = 1.01; length < 1e12; length *= 5.3) {

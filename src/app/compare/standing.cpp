@@ -115,6 +115,10 @@ double RunLengths::median() const {
   return median_of(values);
 }
 
+bool RunLengths::always_safe() const {
+  return std::all_of(lengths.begin(), lengths.end(), [](const RunLength& length) { return length.safe; });
+}
+
 std::vector<RunLengths> run_lengths(const std::vector<ComparedScene>& scenes) {
   ByName<RunLengths> all;
   for (const ComparedScene& scene : scenes) {
@@ -138,8 +142,10 @@ std::vector<RunLengths> run_lengths(const std::vector<ComparedScene>& scenes) {
       add(mine, policy.dt);
     }
   }
-  std::stable_sort(all.items.begin(), all.items.end(),
-                   [](const RunLengths& a, const RunLengths& b) { return a.median() < b.median(); });
+  std::stable_sort(all.items.begin(), all.items.end(), [](const RunLengths& a, const RunLengths& b) {
+    if (a.always_safe() != b.always_safe()) return a.always_safe();
+    return a.median() < b.median();
+  });
   return all.items;
 }
 

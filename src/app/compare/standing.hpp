@@ -43,11 +43,13 @@ struct RunLengths {
   bool policy = false;  ///< of `run`, as against an estimate
   std::vector<RunLength> lengths;
   double median() const;
+  bool always_safe() const;
 };
 
 /// Rules are used as codes use them: 0.8 of what they say, whatever the damping. Estimates that are proven,
 /// or safe but for a stated probability, are used as they can be: 0.98 of what they say, times what damping
-/// leaves of the true step. Policies take their own safety. Sorted by the median, the shortest run first.
+/// leaves of the true step. Policies take their own safety. Those that are safe in every
+/// scene first, and of these the shortest run first, by the median.
 std::vector<RunLengths> run_lengths(const std::vector<ComparedScene>& scenes);
 
 double median_of(std::vector<double> values);

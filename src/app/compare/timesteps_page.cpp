@@ -53,8 +53,12 @@ std::string three_digits(double value) {
   return report::number_text(value);
 }
 
+/// Three digits behind the point; just above 1 the order of what is too much.
 std::string ratio_text(double ratio) {
   if (!std::isfinite(ratio)) return "∞";
+  const double excess = ratio - 1;
+  if (excess > 1e-9 && excess < 5e-4)
+    return "1+" + report::power_of_ten(static_cast<int>(std::lround(std::log10(excess))));
   return ratio < 10 ? fmt::format("{:.3f}", ratio) : three_digits(ratio);
 }
 
@@ -74,69 +78,100 @@ std::vector<const ComparedScene*> compared(const TimestepsReport& report) {
 // ---- across scenes ---------------------------------------------------------------------------------------
 
 void add_safety(const TimestepsReport& report, Page& page) {
-  const std::vector<const ComparedScene*> scenes = compared(report);
   const std::vector<Standing> standings = standings_of(report.scenes);
-  std::vector<const Standing*> proven;
+  std::vector<const Standing*> kept;
   std::vector<const Standing*> lucky;
   std::vector<const Standing*> broken;
-  std::vector<std::string> unsafe;
+  std::vector<const Standing*> unsafe;
   for (const Standing& s : standings) {
-    if (s.unsafe > 0) {
-      unsafe.push_back(fmt::format("{} is unsafe in {} of {}, at worst {} times the true step ({}).", s.name,
-                                   s.unsafe, counted(s.scenes, "scene", "scenes"), ratio_text(s.largest),
-                                   s.largest_in));
-      if (s.claim == timestep::Claim::proven) broken.push_back(&s);
-    } else {
-      (s.claim == timestep::Claim::none ? lucky : proven).push_back(&s);
-    }
+    const bool rule = s.claim == timestep::Claim::none;
+    if (s.unsafe == 0)
+      (rule ? lucky : kept).push_back(&s);
+    else
+      (rule ? unsafe : broken).push_back(&s);
   }
   page.section("Which estimates are safe");
-  page.paragraph(fmt::format(
-      "Of {} in {}, {} exceed the true critical step somewhere, and {} never do{}.",
-      counted(static_cast<std::int64_t>(standings.size()), "estimate", "estimates"),
-      counted(static_cast<std::int64_t>(scenes.size()), "scene", "scenes"), unsafe.size(),
-      standings.size() - unsafe.size(),
-      proven.empty()
-          ? std::string()
-          : fmt::format(", among them those that are proven or safe but for a stated probability: {}",
-                        names_of(proven))));
+  page.paragraph(
+      fmt::format("Of {} in {}, {} never exceed the true critical step. {} of these claim it, with a proof "
+                  "or but for a stated "
+                  "probability.",
+                  counted(static_cast<std::int64_t>(standings.size()), "estimate", "estimates"),
+                  counted(static_cast<std::int64_t>(compared(report).size()), "scene", "scenes"),
+                  kept.size() + lucky.size(), kept.size()));
   if (!broken.empty())
-    page.paragraph(fmt::format(
-        "Estimates that claim a proof and are unsafe here, which is a mistake of the program: {}.",
-        names_of(broken)));
+    page.paragraph(fmt::format("THESE CLAIM TO BE SAFE AND ARE NOT, which is a mistake of the program: {}.",
+                               names_of(broken)));
   if (!lucky.empty())
-    page.paragraph(fmt::format("Rules that were safe in these scenes, which proves nothing of others: {}.",
+    page.paragraph(fmt::format("Rules that were safe in these scenes, which says nothing of others: {}.",
                                names_of(lucky)));
-  page.list(unsafe);
+  std::stable_sort(unsafe.begin(), unsafe.end(),
+                   [](const Standing* a, const Standing* b) { return a->unsafe > b->unsafe; });
+  std::vector<std::string> most;
+  for (const Standing* s : unsafe)
+    most.push_back(
+        fmt::format("{} in {}", s->name, s->unsafe == s->scenes ? "all" : std::to_string(s->unsafe)));
+  if (!most.empty()) page.paragraph(fmt::format("Unsafe in some scenes: {}.", fmt::join(most, ", ")));
 }
 
+Cell cell_of_matrix(const ComparedScene& scene, const std::string& name) {
+  const Estimate* e = timestep::find_estimate(scene.comparison, name);
+  if (e == nullptr) return {"·", Emphasis::faint};
+  if (!e->safe) return {"▲" + ratio_text(e->ratio_to_true), Emphasis::bad};
+  return {ratio_text(e->ratio_to_true), verdict_on(*e) == Verdict::proven ? Emphasis::good : Emphasis::none};
+}
+
+/// Scenes against estimates, in as many tables as it takes to keep them as wide as a page.
 void add_matrix(const TimestepsReport& report, Page& page) {
+  constexpr std::size_t most_columns = 14;
   const std::vector<const ComparedScene*> scenes = compared(report);
-  report::Table table{.columns = {{.name = "estimate"}}, .rows = {}};
-  for (const ComparedScene* scene : scenes)
-    table.columns.push_back({.name = scene->name, .number = true, .upright = true});
-  table.columns.push_back({.name = "cost", .number = true});
-  for (const Standing& standing : standings_of(report.scenes)) {
-    std::vector<Cell> row{{standing.name}};
-    for (const ComparedScene* scene : scenes) {
-      const Estimate* e = timestep::find_estimate(scene->comparison, standing.name);
-      if (e == nullptr)
-        row.push_back({"·", Emphasis::faint});
-      else if (!e->safe)
-        row.push_back({"▲ " + ratio_text(e->ratio_to_true), Emphasis::bad});
-      else
-        row.push_back({ratio_text(e->ratio_to_true),
-                       verdict_on(*e) == Verdict::proven ? Emphasis::good : Emphasis::none});
+  const std::size_t tables = (scenes.size() + most_columns - 1) / most_columns;
+  for (std::size_t t = 0; t < tables; ++t) {
+    const std::size_t begin = t * scenes.size() / tables;
+    const std::size_t end = (t + 1) * scenes.size() / tables;
+    report::Table table{.columns = {{.name = "estimate"}}, .rows = {}};
+    for (std::size_t k = begin; k < end; ++k)
+      table.columns.push_back({.name = scenes[k]->name, .number = true, .upright = true});
+    for (const Standing& standing : standings_of(report.scenes)) {
+      std::vector<Cell> row{{standing.name}};
+      for (std::size_t k = begin; k < end; ++k) row.push_back(cell_of_matrix(*scenes[k], standing.name));
+      table.rows.push_back(std::move(row));
     }
-    row.push_back({three_digits(standing.median_products)});
-    table.rows.push_back(std::move(row));
+    page.table(table,
+               t > 0
+                   ? ""
+                   : "Ratio of each estimate to the true critical step, before any safety factor. ▲: unsafe. "
+                     "Blue: proven. ·: the scene has no such estimate.");
   }
-  page.table(
-      table,
-      "Ratio of each estimate to the true critical step, before any safety factor. ▲: unsafe. Blue: proven. "
-      "·: the scene has no such estimate. Cost: median over the scenes, in products with K that take the "
-      "same "
-      "time.");
+}
+
+void add_sources(const TimestepsReport& report, Page& page) {
+  report::Table table{.columns = {{.name = "estimate"},
+                                  {.name = "claims"},
+                                  {.name = "scenes", .number = true},
+                                  {.name = "unsafe in", .number = true},
+                                  {.name = "smallest", .number = true},
+                                  {.name = "median", .number = true},
+                                  {.name = "largest", .number = true},
+                                  {.name = "largest in"},
+                                  {.name = "cost", .number = true},
+                                  {.name = "source"}},
+                      .rows = {}};
+  for (const Standing& s : standings_of(report.scenes))
+    table.rows.push_back(
+        {{s.name},
+         {s.claim == timestep::Claim::none ? "-" : std::string(timestep::name_of(s.claim)),
+          s.claim == timestep::Claim::proven ? Emphasis::good : Emphasis::none},
+         {std::to_string(s.scenes)},
+         {s.unsafe == 0 ? "-" : std::to_string(s.unsafe), s.unsafe == 0 ? Emphasis::none : Emphasis::bad},
+         {ratio_text(s.smallest)},
+         {ratio_text(s.median)},
+         {ratio_text(s.largest), s.unsafe == 0 ? Emphasis::none : Emphasis::bad},
+         {three_digits(s.median_products)},
+         {s.source, Emphasis::faint}});
+  page.table(table,
+             "Ratios to the true critical step over all scenes, what each estimate claims of itself, and "
+             "where it is "
+             "from. Cost: median over the scenes, in products with K that take the same time.");
 }
 
 void add_run_lengths(const TimestepsReport& report, Page& page) {
@@ -144,11 +179,9 @@ void add_run_lengths(const TimestepsReport& report, Page& page) {
   if (lengths.empty()) return;
   page.section("Steps saved in a run");
   std::vector<std::string> best;
-  for (const RunLengths& mine : lengths) {
-    const bool safe =
-        std::all_of(mine.lengths.begin(), mine.lengths.end(), [](const RunLength& l) { return l.safe; });
-    if (safe && best.size() < 3) best.push_back(fmt::format("{} ({:.2f})", mine.name, mine.median()));
-  }
+  for (const RunLengths& mine : lengths)
+    if (mine.always_safe() && best.size() < 3)
+      best.push_back(fmt::format("{} ({:.2f})", mine.name, mine.median()));
   page.paragraph(
       best.empty()
           ? "None of them is below the limit of the cycle in every scene."
@@ -176,7 +209,8 @@ void add_run_lengths(const TimestepsReport& report, Page& page) {
   chart.x = Axis::logarithmic(low, high);
   page.picture(
       svg_of(chart),
-      "Number of steps for the same time; a mark a scene, a bar at the median; to the left is faster. "
+      "Number of steps for the same time; a mark a scene, a bar at the median; to the left is faster. On top "
+      "those that are safe in every scene. "
       "Circles: "
       "the step is below the limit of the cycle, with local damping and dashpots. Triangles: it is not. "
       "Rules "
@@ -201,8 +235,8 @@ void add_sizes(const std::vector<CostOfSize>& sizes, Page& page) {
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
   report::Chart chart{.title = "Seconds of each estimate against the number of bodies",
-                      .x = Axis::logarithmic(static_cast<double>(sizes.front().bodies),
-                                             static_cast<double>(sizes.back().bodies)),
+                      .x = Axis::logarithmic_with_margins(static_cast<double>(sizes.front().bodies),
+                                                          static_cast<double>(sizes.back().bodies)),
                       .y = Axis::logarithmic(1, 2),
                       .x_name = "bodies",
                       .y_name = "seconds",
@@ -225,7 +259,7 @@ void add_sizes(const std::vector<CostOfSize>& sizes, Page& page) {
     }
     chart.series.push_back(std::move(series));
   }
-  chart.y = Axis::logarithmic(low, high);
+  chart.y = Axis::logarithmic_with_margins(low, high);
   const auto first = static_cast<double>(sizes.front().bodies);
   const auto last = static_cast<double>(sizes.back().bodies);
   const double start = std::max(chart.y.low() * 1.3, high * 1.2 * first / last);
@@ -233,7 +267,8 @@ void add_sizes(const std::vector<CostOfSize>& sizes, Page& page) {
   chart.guides.push_back({"slope 1", {{first, start}, {end, start * end / first}}});
   page.picture(
       svg_of(chart),
-      "Seconds of one answer, on packings of 2 m balls on a face-centred lattice whose centres and radii are "
+      "Seconds of one answer, on packings of balls of 2 m on a face-centred lattice whose centres and radii "
+      "are "
       "disordered so that half of the 12 neighbours touch: the contacts of a settled packing, made in linear "
       "time. Filled circles: proven; filled diamonds: safe but for a stated probability; open squares: "
       "rules; "
@@ -277,15 +312,15 @@ void add_scene_picture(const ComparedScene& scene, Page& page) {
           scene.name, three_digits(100 * nearest_error)));
 }
 
-void add_scene_table(const ComparedScene& scene, Page& page) {
+void add_scene_table(const ComparedScene& scene, bool with_sources, Page& page) {
   report::Table table{.columns = {{.name = "estimate"},
                                   {.name = "step [s]", .number = true},
                                   {.name = "of true", .number = true},
                                   {.name = "cost", .number = true},
                                   {.name = "seconds", .number = true},
-                                  {.name = "verdict"},
-                                  {.name = "source"}},
+                                  {.name = "verdict"}},
                       .rows = {}};
+  if (with_sources) table.columns.push_back({.name = "source"});
   std::vector<const Estimate*> sorted;
   for (const Estimate& e : scene.comparison.estimates) sorted.push_back(&e);
   std::stable_sort(sorted.begin(), sorted.end(), [](const Estimate* a, const Estimate* b) {
@@ -314,7 +349,7 @@ void add_scene_table(const ComparedScene& scene, Page& page) {
   page.table(table, "Nearest to the truth first. Cost: in products with K that take the same time.");
 }
 
-void add_scene(const ComparedScene& scene, Page& page) {
+void add_scene(const ComparedScene& scene, bool with_sources, Page& page) {
   const timestep::Comparison& c = scene.comparison;
   page.subsection(scene.name);
   page.paragraph(fmt::format(
@@ -341,7 +376,7 @@ void add_scene(const ComparedScene& scene, Page& page) {
                         best->name, ratio_text(best->ratio_to_true),
                         three_digits(equivalent_products(scene, *best)))));
   add_scene_picture(scene, page);
-  add_scene_table(scene, page);
+  add_scene_table(scene, with_sources, page);
   std::vector<std::string> left_out;
   for (const timestep::LeftOut& none : c.left_out)
     left_out.push_back(none.name + " does not apply: " + none.reason);
@@ -369,6 +404,7 @@ std::string page_of(const TimestepsReport& report) {
   page.list(skipped);
   if (scenes.size() > 1) {
     add_safety(report, page);
+    add_sources(report, page);
     add_matrix(report, page);
   }
   add_run_lengths(report, page);
@@ -377,7 +413,8 @@ std::string page_of(const TimestepsReport& report) {
     page.section(scenes.size() > 1 ? "Scene by scene" : "Error against cost");
     page.picture(key_of_verdicts(), "");
   }
-  for (const ComparedScene* scene : scenes) add_scene(*scene, page);
+  const bool alone = scenes.size() == 1;  // the sources of several are in the table across them
+  for (const ComparedScene* scene : scenes) add_scene(*scene, alone, page);
   return page.finish();
 }
 
