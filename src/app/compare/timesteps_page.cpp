@@ -122,7 +122,7 @@ Cell cell_of_matrix(const ComparedScene& scene, const std::string& name) {
 
 /// Scenes against estimates, in as many tables as it takes to keep them as wide as a page.
 void add_matrix(const TimestepsReport& report, Page& page) {
-  constexpr std::size_t most_columns = 14;
+  constexpr std::size_t most_columns = 13;
   const std::vector<const ComparedScene*> scenes = compared(report);
   const std::size_t tables = (scenes.size() + most_columns - 1) / most_columns;
   for (std::size_t t = 0; t < tables; ++t) {
@@ -289,7 +289,7 @@ void add_scene_picture(const ComparedScene& scene, Page& page) {
       .x_name = fmt::format("cost in products with K that take the same time (one takes {} s)",
                             three_digits(scene.product_seconds)),
       .y_name = "step, from the true one",
-      .height = 470};
+      .height = 520};
   for (const Estimate& e : scene.comparison.estimates) {
     const double cost = equivalent_products(scene, e);
     const double error = e.ratio_to_true - 1;
