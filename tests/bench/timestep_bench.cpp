@@ -1,12 +1,15 @@
 // The true critical timestep and its estimates, in seconds and in units of matrix-free products.
 #include "eigengrain/assembly/product.hpp"
 #include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/timestep/estimates.hpp"
 #include "eigengrain/timestep/truth.hpp"
 
 #include "bench/measure.hpp"
 #include "bench/packings.hpp"
 
 #include <benchmark/benchmark.h>
+
+#include <string>
 
 namespace eigengrain::bench {
 namespace {
@@ -67,6 +70,32 @@ void scaled_block_bound(benchmark::State& state) {
   in_products(state, p, [&] { benchmark::DoNotOptimize(cycle::scaled_block_bound(p, 3)); });
 }
 BENCHMARK(scaled_block_bound)->Apply(sizes_and_threads)->Iterations(5);
+
+/// Every estimate by its name, on one thread.
+void estimate(benchmark::State& state, const timestep::Estimator& estimator) {
+  const Packing& p = packing(state.range(0));
+  const Threads one;
+  OneProduct product(p);
+  SideBySide times;
+  timestep::Answer answer;
+  for ([[maybe_unused]] auto _ : state) {
+    const double unit = seconds_a_call(one, [&] { product(); });
+    const double seconds = one.seconds([&] { answer = estimator.find({p.model, p}); });
+    times.add(unit, seconds);
+    state.SetIterationTime(seconds);
+  }
+  if (!answer.left_out.empty()) state.SkipWithError(answer.left_out.c_str());
+  state.counters["in_products"] = times.second_over_first();
+}
+
+[[maybe_unused]] const bool registered = [] {
+  for (const timestep::Estimator& estimator : timestep::estimators())
+    benchmark::RegisterBenchmark(("estimate/" + std::string(estimator.name)).c_str(),
+                                 [&estimator](benchmark::State& state) { estimate(state, estimator); })
+        ->Apply(sizes)
+        ->Iterations(3);
+  return true;
+}();
 
 }  // namespace
 }  // namespace eigengrain::bench

@@ -136,6 +136,14 @@ balls: [{lattice: sc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03
         self.assertAlmostEqual(by_name["diagonal"]["ratio_to_true"], math.sqrt(1.5), delta=1e-9)
         self.assertFalse(by_name["diagonal"]["safe"])
         self.assertTrue(by_name["block-bound"]["safe"] and by_name["block-bound"]["claim"] == "proven")
+        self.assertAlmostEqual(by_name["yade-global-stiffness"]["ratio_to_true"], 1.41044 * math.sqrt(1.5), delta=1e-9)
+        self.assertEqual(by_name["lanczos-probable-20"]["claim"], "probable")
+        self.assertEqual(by_name["lanczos-probable-20"]["failure"], 1e-6)
+        least, largest = by_name["diagonal-turned"]["range"]
+        self.assertLess(least, by_name["diagonal-turned"]["dt"])
+        self.assertLessEqual(largest, by_name["diagonal"]["dt"] * (1 + 1e-9))  # no frame is worse than this one
+        self.assertEqual([none["name"] for none in report["left_out"]], ["rayleigh", "p-wave"])
+        self.assertIn("p-wave                 none: material glass has no young", text)
         self.assertFalse(report["policy"]["safe"])
         self.assertIn("UNSAFE", text)
         self.assertIn("WARNING", text)

@@ -44,9 +44,9 @@ class RandomBodies {
     }
     if (chance(0.3)) builder.plane({0, 0, -0.9}, {0, 0, 1});
     if (chance(0.2)) builder.plane({0.9, 0, 0}, {-1, 0.3, 0.2});
-    if (chance(0.2))
+    if (bodies <= 4 && chance(0.4))
       builder.periodic(
-          Vec3::Constant(*std::max_element(radius.begin(), radius.end()) * (1.2 + 3 * uniform())));
+          Vec3::Constant(*std::max_element(radius.begin(), radius.end()) * (1.4 + 2 * uniform())));
     return builder;
   }
 

@@ -1,10 +1,13 @@
 #include "timestep/estimates/lanczos.hpp"
 
 #include "eigengrain/assembly/product.hpp"
+#include "eigengrain/base/error.hpp"
 #include "eigengrain/base/parallel.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,8 +21,6 @@ namespace {
 /// Relative residual at which a Ritz pair counts as converged. Until then vectors lose no more of their
 /// orthogonality than some ε over this.
 constexpr double converged = 1e-9;
-
-constexpr int check_every = 4;
 
 constexpr std::int64_t chunk_size = 1 << 14;
 
@@ -43,6 +44,8 @@ struct Tridiagonal {
     const auto k = static_cast<Eigen::Index>(run.alpha.size());
     solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(run.alpha.data(), k),
                                   Eigen::Map<const Eigen::VectorXd>(run.beta.data(), k - 1));
+    if (solver.info() != Eigen::Success)
+      throw SolverError(fmt::format("the {} eigenvalues of Lanczos' small matrix were not found", k));
   }
   double largest() const { return solver.eigenvalues()[solver.eigenvalues().size() - 1]; }
   /// |A x - θ x| of the Ritz pair at an end: 0 the smallest, else the largest.
@@ -51,6 +54,17 @@ struct Tridiagonal {
     return beta * std::abs(solver.eigenvectors()(last, of_largest ? last : 0));
   }
 };
+
+/// Whether the Ritz pairs are to be looked at after a step. In small systems every step may be the last that
+/// finds anything; later it is enough to look now and then, as eigenvalues of the small matrix cost as much
+/// as a product on some thousand unknowns. A space that is whole has no next vector.
+bool is_time_to_look(int step, int steps, const LanczosRun& run) {
+  constexpr int always = 12;
+  constexpr int every = 4;
+  const double largest = *std::max_element(run.alpha.begin(), run.alpha.end());
+  return step < always || step % every == every - 1 || step == steps - 1 ||
+         !(run.beta.back() > converged * largest);
+}
 
 /// ln p_k(t) of the Lanczos polynomial, p_k(A) v_1 = v_{k+1}, right of its zeros.
 double log_polynomial(const LanczosRun& run, double t) {
@@ -112,9 +126,7 @@ LanczosRun lanczos(const assembly::LinearSystem& system, int steps, std::vector<
     run.alpha.push_back(alpha);
     run.beta.push_back(std::sqrt(square));
     if (with_vector) basis.push_back(v);
-    // Eigenvalues of the small matrix cost as much as a product on some thousand unknowns.
-    const bool whole = run.beta.back() <= converged * std::abs(alpha);
-    if (step % check_every != check_every - 1 && step < steps - 1 && !whole) {
+    if (!is_time_to_look(step, steps, run)) {
       advance(run.beta.back());
       continue;
     }
@@ -123,7 +135,8 @@ LanczosRun lanczos(const assembly::LinearSystem& system, int steps, std::vector<
     run.residual = tridiagonal.residual(run.beta.back(), true);
     if (with_vector) top = tridiagonal.solver.eigenvectors().rightCols<1>();
     const double enough = converged * run.ritz;
-    if (!(run.residual > enough && tridiagonal.residual(run.beta.back(), false) > enough)) break;
+    if (!(std::min({run.residual, tridiagonal.residual(run.beta.back(), false), run.beta.back()}) > enough))
+      break;
     advance(run.beta.back());
   }
   if (with_vector) {
