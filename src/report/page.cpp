@@ -32,7 +32,8 @@ tbody tr { break-inside: avoid } thead { display: table-header-group }
 .f { color: #767676 } .g { color: #0072B2 } .b { color: #a84300; font-weight: 700 }
 .wide { overflow-x: auto }
 @media print { body { font-size: 10pt; max-width: none; margin: 0; padding: 0 } table { font-size: 7.5pt }
-  h2, h3 { break-after: avoid } .wide { overflow: visible } }
+  h2 { break-after: avoid } h3 { break-before: page; break-after: avoid }
+  .wide { overflow: visible } }
 )";
 
 std::string classes_of(const Table::Column& column, Emphasis emphasis) {

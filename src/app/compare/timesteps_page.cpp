@@ -166,6 +166,7 @@ void add_sources(const TimestepsReport& report, Page& page) {
          {ratio_text(s.smallest)},
          {ratio_text(s.median)},
          {ratio_text(s.largest), s.unsafe == 0 ? Emphasis::none : Emphasis::bad},
+         {s.largest_in},
          {three_digits(s.median_products)},
          {s.source, Emphasis::faint}});
   page.table(table,
