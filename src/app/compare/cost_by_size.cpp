@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 namespace eigengrain::app {
 namespace {
@@ -39,6 +40,25 @@ model::Scene packing_of(std::int64_t balls) {
   bodies.material.assign(bodies.radius.size(), 0);
   bodies.fixed.assign(bodies.radius.size(), {});
   return scene;
+}
+
+/// Of the line that fits ln(seconds) over ln(bodies) best.
+double slope_of(std::span<const CostOfSize> sizes, const std::string& name) {
+  const auto n = static_cast<double>(sizes.size());
+  double mean_x = 0;
+  double mean_y = 0;
+  for (const CostOfSize& size : sizes) {
+    mean_x += std::log(static_cast<double>(size.bodies)) / n;
+    mean_y += std::log(seconds_of(size, name)) / n;
+  }
+  double xy = 0;
+  double xx = 0;
+  for (const CostOfSize& size : sizes) {
+    const double x = std::log(static_cast<double>(size.bodies)) - mean_x;
+    xy += x * (std::log(seconds_of(size, name)) - mean_y);
+    xx += x * x;
+  }
+  return xy / xx;
 }
 
 }  // namespace
@@ -74,17 +94,21 @@ std::vector<CostOfSize> costs_by_size(const std::vector<std::int64_t>& sizes) {
   return costs;
 }
 
+std::span<const CostOfSize> sizes_of_growth(const std::vector<CostOfSize>& costs) {
+  constexpr std::int64_t large = 1000;  // below it calls count, not bodies
+  const auto first =
+      std::find_if(costs.begin(), costs.end(), [](const CostOfSize& c) { return c.bodies >= large; });
+  return costs.end() - first >= 2 ? std::span(first, costs.end()) : std::span(costs);
+}
+
 std::vector<Growth> growth_of(const std::vector<CostOfSize>& costs) {
   std::vector<Growth> result;
   if (costs.size() < 2) return result;
-  const CostOfSize& large = costs[costs.size() - 1];
-  const CostOfSize& small = costs[costs.size() - 2];
-  const double decades = std::log(static_cast<double>(large.bodies) / static_cast<double>(small.bodies));
-  if (!(decades > 0)) return result;
+  const std::span<const CostOfSize> sizes = sizes_of_growth(costs);
   std::vector<std::string> names{name_of_product, name_of_truth};
-  for (const CostOfSize::Cost& mine : large.estimates) names.push_back(mine.name);
+  for (const CostOfSize::Cost& mine : costs.back().estimates) names.push_back(mine.name);
   for (const std::string& name : names) {
-    const double exponent = std::log(seconds_of(large, name) / seconds_of(small, name)) / decades;
+    const double exponent = slope_of(sizes, name);
     if (std::isfinite(exponent)) result.push_back({name, exponent});
   }
   return result;

@@ -229,10 +229,12 @@ void add_sizes(const std::vector<CostOfSize>& sizes, Page& page) {
   const std::vector<Growth> growth = growth_of(sizes);
   const auto [least, most] = std::minmax_element(
       growth.begin(), growth.end(), [](const Growth& a, const Growth& b) { return a.exponent < b.exponent; });
-  page.paragraph(fmt::format(
-      "From {} to {} bodies the time grows with exponents between {:.2f} ({}) and {:.2f} ({}); 1 is linear.",
-      grouped(sizes[sizes.size() - 2].bodies), grouped(sizes.back().bodies), least->exponent, least->name,
-      most->exponent, most->name));
+  page.paragraph(
+      fmt::format("From {} to {} bodies the time grows with exponents between {:.2f} ({}) and {:.2f} ({}); 1 "
+                  "is linear, and what no "
+                  "longer fits into caches counts as growth.",
+                  grouped(sizes_of_growth(sizes).front().bodies), grouped(sizes.back().bodies),
+                  least->exponent, least->name, most->exponent, most->name));
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
   report::Chart chart{.title = "Seconds of each estimate against the number of bodies",
