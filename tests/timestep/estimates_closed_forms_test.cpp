@@ -194,6 +194,10 @@ TEST(Estimates, AreLeftOutWithAReasonWhereASceneHasThemNot) {
   held.ball(Vec3::Zero()).ball({1.99, 0, 0}, 1, 1, model::FixedComponents(2));
   EXPECT_NE(reason("diagonal-turned", held, true).find("fixed"), std::string::npos);
   EXPECT_EQ(reason("diagonal-turned", plain, true), "");
+  SceneBuilder disks = plain;
+  disks.scene().bodies.inertia[0] = 0.5;  // ½ m R²
+  EXPECT_NE(reason("p-wave-of-stiffness", disks, true).find("no sphere"), std::string::npos);
+  EXPECT_EQ(reason("p-wave-of-stiffness", plain, true), "");
 }
 
 TEST(Estimates, OfModuliAreWavesThroughTheSmallestBall) {

@@ -43,7 +43,8 @@ double reduced_contact_duration(const assembly::LinearSystem& system);
 Answer rayleigh(const Question& question);
 /// min R √(ρ/E) over balls (YADE, utils.PWaveTimeStep).
 Answer p_wave(const Question& question);
-/// The same with the modulus from which YADE would make the stiffest contact of the ball, k_n = 2 E R*.
+/// The same with the modulus from which YADE would make the stiffest contact of the ball, k_n = 2 E R*. Left
+/// out with clumps and disks.
 Answer p_wave_of_stiffness(const Question& question);
 
 }  // namespace eigengrain::timestep

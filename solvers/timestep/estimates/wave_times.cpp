@@ -56,6 +56,9 @@ Answer p_wave(const Question& question) {
 Answer p_wave_of_stiffness(const Question& question) {
   const model::Bodies& bodies = question.model.bodies;
   if (!bodies.clumps.empty()) return {.left_out = "clumps have no one radius"};
+  for (std::size_t i = 0; i < bodies.radius.size(); ++i)
+    if (std::abs(bodies.inertia[i] / model::sphere_inertia(bodies.radius[i], bodies.mass[i]) - 1) > 1e-9)
+      return {.left_out = "a body is no sphere, so that its mass and radius give no density"};
   std::vector<double> young(bodies.radius.size(), 0.0);
   for (const contact::ContactElement& e : question.system.elements) {
     const double a = bodies.radius[static_cast<std::size_t>(e.a)];
