@@ -19,6 +19,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 
 namespace eigengrain::app {
 namespace {
@@ -80,6 +81,18 @@ Limit limit_of(const assembly::State& state) {
   return {cycle::policy_of(settings).dt(state), "proven for the first contacts that may form"};
 }
 
+/// How long a study will take: each fraction runs twice, once for its time alone; the smallest four more
+/// times, with 1, 1/2 and 1/4 of its step.
+double steps_of_study(const timestep::StepStudyOptions& study) {
+  double runs = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const double fraction : study.fractions) {
+    runs += 2 / fraction;
+    smallest = std::min(smallest, fraction);
+  }
+  return study.time / study.limit * (runs + (1 + 2 + 4) / smallest);
+}
+
 }  // namespace
 
 void compare_timesteps(const Options& options) {
@@ -112,6 +125,7 @@ void compare_steps(const Options& options) {
   timestep::StepStudyOptions study{
       .limit = limit.dt, .time = time_of(state, options, cycle::policy_of(state.settings).dt(state))};
   if (!options.fractions.empty()) study.fractions = options.fractions;
+  fmt::print(stderr, "about {:.2g} steps of the cycle in all\n", steps_of_study(study));
   publish(
       StepsReport{
           .name = state.settings.name, .limit = limit.what, .study = timestep::study_steps(state, study)},

@@ -84,8 +84,9 @@ struct StepStudy {
 /// deforms does not have; restitution is measured in scenes of at most 100 balls that fly freely between
 /// impacts (no clumps, meshes, moving walls, loads, or local damping beside gravity).
 ///
-/// Cost: about 180 time/limit steps with the default fractions. Throws InputError where masses are scaled,
-/// fractions, limit or time are of no use, or the reference itself blows up.
+/// Cost: about 240 time/limit steps with the default fractions, most for those below a fifth of the limit.
+/// Throws InputError where masses are scaled, fractions, limit or time are of no use, or the reference itself
+/// blows up.
 StepStudy study_steps(const assembly::State& start, const StepStudyOptions& options);
 
 }  // namespace eigengrain::timestep
