@@ -20,13 +20,10 @@ namespace {
 constexpr int failure = 1;      // the scene or a solver
 constexpr int usage_error = 2;  // the command line
 
-/// A verb with what all verbs take.
-CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& what, Options& options,
-                   void (*run)(const Options&)) {
+/// A verb with what all verbs take but the scene.
+CLI::App* add_bare_verb(CLI::App& program, const std::string& name, const std::string& what, Options& options,
+                        void (*run)(const Options&)) {
   CLI::App* verb = program.add_subcommand(name, what);
-  verb->add_option("scene", options.scene, "scene (YAML), or a state that was saved (HDF5)")
-      ->required()
-      ->type_name("SCENE.yaml|STATE.h5");
   verb->add_option("--json", options.json, "write the result there as JSON")->type_name("FILE");
   verb->add_option("--set", options.overrides,
                    "override a key of the scene, e.g. contacts.0.kn=2e5; may be repeated")
@@ -36,6 +33,16 @@ CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
   verb->callback([&options, run] { run(options); });
+  return verb;
+}
+
+/// A verb with what all verbs take.
+CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& what, Options& options,
+                   void (*run)(const Options&)) {
+  CLI::App* verb = add_bare_verb(program, name, what, options, run);
+  verb->add_option("scene", options.scene, "scene (YAML), or a state that was saved (HDF5)")
+      ->required()
+      ->type_name("SCENE.yaml|STATE.h5");
   return verb;
 }
 
@@ -50,16 +57,60 @@ void add_petsc(CLI::App& verb, Options& options, const std::string& example) {
   verb.add_option("--petsc", options.petsc, fmt::format("options for PETSc and SLEPc, e.g. \"{}\"", example))
       ->type_name("OPTIONS");
 }
+
+void add_page(CLI::App& verb, Options& options) {
+  verb.add_option("--output,--out", options.output, "write a page with pictures there (HTML, one file)")
+      ->type_name("REPORT.html");
+}
+
+/// `compare` and its subjects.
+void add_compare(CLI::App& program, Options& options) {
+  CLI::App* compare = program.add_subcommand("compare", "methods beside each other, as a table and a page");
+  compare->require_subcommand(1);
+  CLI::App* timesteps =
+      add_bare_verb(*compare, "timesteps", "estimated against true critical timesteps, over many scenes",
+                    options, compare_timesteps);
+  timesteps
+      ->add_option("scenes", options.scenes, "scenes, states, and folders of scenes (all *.yaml in them)")
+      ->required()
+      ->type_name("SCENE.yaml|STATE.h5|FOLDER");
+  timesteps
+      ->add_option("--sizes", options.sizes,
+                   "measure the cost in packings of so many balls too, e.g. 100,1000,10000")
+      ->delimiter(',')
+      ->type_name("N,N,...");
+  add_page(*timesteps, options);
+  CLI::App* steps =
+      add_verb(*compare, "steps", "what a larger step costs in accuracy", options, compare_steps);
+  steps
+      ->add_option("--fractions", options.fractions,
+                   "steps, as parts of the limit; default 0.05,0.1,0.2,...,1")
+      ->delimiter(',')
+      ->type_name("F,F,...");
+  steps->add_option("--time", options.time, "how long to run, s; default: as the scene says")
+      ->check(CLI::PositiveNumber)
+      ->type_name("SECONDS");
+  add_page(*steps, options);
+}
 #endif
 
-/// A word that is no verb: said plainly, with the verb that was probably meant.
-void require_known_verb(const CLI::App& program, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  std::vector<std::string> verbs;
-  for (const CLI::App* verb : program.get_subcommands({})) verbs.push_back(verb->get_name());
-  if (std::find(verbs.begin(), verbs.end(), argv[1]) != verbs.end()) return;
-  throw CLI::ValidationError(fmt::format("there is no verb \"{}\" here{} (verbs: {})", argv[1],
-                                         io::did_you_mean(argv[1], verbs), fmt::join(verbs, ", ")));
+/// A word that is no verb (or subject of one): said plainly, with the one that was probably meant.
+void require_known(const CLI::App& parent, const std::string& what, const std::string& all,
+                   const std::string& word) {
+  if (word.starts_with('-')) return;
+  std::vector<std::string> known;
+  for (const CLI::App* verb : parent.get_subcommands({})) known.push_back(verb->get_name());
+  if (std::find(known.begin(), known.end(), word) != known.end()) return;
+  throw CLI::ValidationError(fmt::format("there is no {0} \"{1}\" here{2} ({3}: {4})", what, word,
+                                         io::did_you_mean(word, known), all, fmt::join(known, ", ")));
+}
+
+void require_known_words(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2) return;
+  require_known(program, "verb", "verbs", argv[1]);
+  for (const CLI::App* verb : program.get_subcommands({}))
+    if (argc > 2 && verb->get_name() == argv[1] && !verb->get_subcommands({}).empty())
+      require_known(*verb, fmt::format("subject of {}", argv[1]), "subjects", argv[2]);
 }
 
 int run_program(int argc, char** argv) {
@@ -100,12 +151,13 @@ int run_program(int argc, char** argv) {
                     "prove the true step by a sparse factorisation, however long that takes");
   judging->add_flag("--empirical", options.empirical,
                     "find the limit by running the cycle with one step after the other, too");
+  add_compare(program, options);
 #endif
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
     fmt::print("{}", io::schema_markdown());
   });
   try {
-    require_known_verb(program, argc, argv);
+    require_known_words(program, argc, argv);
     program.parse(argc, argv);
     return 0;
   } catch (const CLI::Success& success) {

@@ -17,7 +17,7 @@ from pathlib import Path
 # Each folder may use the folders of the rows above its own; folders of one row do not know each other.
 LAYERS = [
     ["base"],
-    ["model"],
+    ["model", "report"],
     ["contact", "fem", "search"],
     ["assembly"],
     ["measures", "generate"],

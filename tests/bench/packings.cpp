@@ -1,54 +1,34 @@
 #include "packings.hpp"
 
 #include "eigengrain/assembly/stiffness.hpp"
+#include "eigengrain/generate/jittered_lattice.hpp"
 #include "eigengrain/io/scene_reader.hpp"
 
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <random>
 #include <string>
 
 namespace eigengrain::bench {
 namespace {
 
-/// Twice as long along z as along x and y: 10, 100 and 1,000 thousand are then close to whole numbers of
-/// cells.
-std::array<int, 3> lattice_cells(std::int64_t bodies) {
-  const int n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(bodies) / 8)));
-  return {n, n, 2 * n};
-}
-
 model::Scene jittered_lattice(std::int64_t bodies) {
-  constexpr double spacing = 2.0;  // of neighbours; twice the mean radius, so that one in two touches
-  constexpr std::array<std::array<double, 3>, 4> sites{{{0, 0, 0}, {.5, .5, 0}, {.5, 0, .5}, {0, .5, .5}}};
-  const double edge = spacing * std::numbers::sqrt2;
-  const std::array<int, 3> cells = lattice_cells(bodies);
-
+  generate::Random random(1);
+  const generate::PeriodicBalls made = generate::jittered_lattice(bodies, random);
   model::Scene scene;
   scene.name = "jittered lattice";
   scene.materials.push_back({"grain", 2500.0});
   scene.contacts.push_back({.law = "linear", .parameters = {1e5, 5e4, 0.5, 0.0, 0.0, 0.0}});
-  scene.cell =
-      model::PeriodicCell::box(Vec3::Zero(), edge * Vec3(cells[0], cells[1], cells[2]), {true, true, true});
-
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> jitter(-0.05, 0.05);
-  std::uniform_real_distribution<double> radius(0.9, 1.1);
+  scene.cell = made.region.cell();
   model::Bodies& b = scene.bodies;
-  for (int i = 0; i < cells[0]; ++i)
-    for (int j = 0; j < cells[1]; ++j)
-      for (int k = 0; k < cells[2]; ++k)
-        for (const std::array<double, 3>& site : sites) {
-          const Vec3 shift(jitter(random), jitter(random), jitter(random));
-          b.identity.push_back(b.size());
-          b.position.push_back(
-              scene.cell.wrapped(edge * Vec3(i + site[0], j + site[1], k + site[2]) + shift));
-          b.radius.push_back(radius(random));
-          b.mass.push_back(model::sphere_mass(b.radius.back(), 2500.0));
-          b.inertia.push_back(model::sphere_inertia(b.radius.back(), b.mass.back()));
-        }
+  b.position = made.balls.position;
+  b.radius = made.balls.radius;
+  for (const double radius : b.radius) {
+    b.identity.push_back(static_cast<std::int64_t>(b.identity.size()));
+    b.mass.push_back(model::sphere_mass(radius, 2500.0));
+    b.inertia.push_back(model::sphere_inertia(radius, b.mass.back()));
+  }
   b.material.assign(b.position.size(), 0);
   b.fixed.assign(b.position.size(), {});
   return scene;

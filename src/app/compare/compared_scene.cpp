@@ -1,0 +1,194 @@
+#include "compared_scene.hpp"
+
+#include "eigengrain/assembly/product.hpp"
+#include "eigengrain/base/error.hpp"
+#include "eigengrain/base/timer.hpp"
+#include "eigengrain/cycle/mass_scaling.hpp"
+#include "eigengrain/cycle/policy.hpp"
+#include "eigengrain/io/scene_reader.hpp"
+#include "eigengrain/io/state_file.hpp"
+
+#include "../input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <string_view>
+
+namespace eigengrain::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The policies of scene files that find a step by themselves, with their default safety.
+struct KnownPolicy {
+  std::string_view name;
+  model::TimestepPolicy policy;
+  double safety;
+};
+constexpr std::array known_policies{KnownPolicy{"estimate", model::TimestepPolicy::estimate, 0.8},
+                                    KnownPolicy{"bound", model::TimestepPolicy::bound, 0.8},
+                                    KnownPolicy{"tracked", model::TimestepPolicy::tracked, 0.98}};
+
+/// The first call is that of cold caches, and machines have other things to do: the least of some counts, as
+/// many as fit into this time.
+constexpr double enough_time = 0.05;  // s
+constexpr int most_calls = 200;
+constexpr int fewest_calls = 10;  // of a product
+
+std::vector<std::string> scenes_in(const fs::path& folder) {
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Names that tell the files apart: stems, with as much of the folders as it takes.
+std::vector<std::string> names_of(const std::vector<std::string>& files) {
+  std::map<std::string, int> count;
+  for (const std::string& file : files) ++count[fs::path(file).stem().string()];
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    const fs::path path = fs::absolute(file).lexically_normal();
+    const std::string stem = path.stem().string();
+    names.push_back(count[stem] == 1 ? stem : (path.parent_path().filename() / stem).string());
+  }
+  return names;
+}
+
+Options options_for(const Options& options, const std::string& file) {
+  Options of_scene = options;
+  of_scene.scene = file;
+  of_scene.output.clear();
+  return of_scene;
+}
+
+/// Reads everything once for its mistakes alone, so that nobody waits for an hour to hear of the last
+/// scene's.
+void check_all(const std::vector<std::string>& files, const Options& options) {
+  std::vector<Mistake> mistakes;
+  for (const std::string& file : files) {
+    if (io::is_state_file(file)) continue;
+    try {
+      io::read_scene(file, options.overrides);
+    } catch (const InputError& error) {
+      mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
+    }
+  }
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+}
+
+std::vector<PolicyStep> steps_of_policies(const assembly::State& state, double limit) {
+  std::vector<PolicyStep> steps;
+  if (state.settings.mass_scaling) return steps;  // masses follow the step there, not the other way round
+  for (const KnownPolicy& known : known_policies) {
+    model::Scene settings = state.settings;
+    settings.timestep = model::TimestepChoice{.policy = known.policy, .safety = known.safety, .dt = {}};
+    const double dt = cycle::policy_of(settings).dt(state);
+    steps.push_back({std::string(known.name), dt, dt <= limit});
+  }
+  return steps;
+}
+
+void compare(const Options& options, ComparedScene& scene) {
+  assembly::State state = read_input(options).state;
+  if (state.settings.mass_scaling && state.next_dt == 0) cycle::scale_masses(state);
+  const assembly::LinearSystem system(state.model);
+  if (system.unknowns.free_components().empty() || system.elements.empty()) {
+    scene.skipped = "nothing touches that could move, so no step is critical";
+    return;
+  }
+  scene.comparison = timestep::compare(state.model, {}, state.settings.materials);
+  if (!std::isfinite(scene.comparison.truth.dt)) {
+    scene.skipped = "nothing resists a motion, so no step is critical";
+    return;
+  }
+  scene.product_seconds = seconds_of_product(system);
+  measure_again({state.model, system, state.settings.materials}, scene.comparison);
+  scene.policies = steps_of_policies(state, scene.comparison.truth.limit);
+}
+
+}  // namespace
+
+std::vector<std::string> files_of(const std::vector<std::string>& arguments) {
+  std::vector<std::string> files;
+  std::vector<Mistake> mistakes;
+  for (const std::string& argument : arguments) {
+    if (!fs::is_directory(argument)) {
+      if (fs::exists(argument))
+        files.push_back(argument);
+      else
+        mistakes.push_back({argument, 0, "there is no such file or folder"});
+      continue;
+    }
+    const std::vector<std::string> found = scenes_in(argument);
+    if (found.empty())
+      mistakes.push_back(
+          {argument, 0, "no scene (*.yaml) in this folder; name one that holds some, or a scene"});
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  if (!mistakes.empty()) throw InputError(std::move(mistakes));
+  return files;
+}
+
+std::vector<ComparedScene> compare_scenes(const Options& options) {
+  const std::vector<std::string> files = files_of(options.scenes);
+  check_all(files, options);
+  const std::vector<std::string> names = names_of(files);
+  std::vector<ComparedScene> scenes;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    ComparedScene& scene = scenes.emplace_back(ComparedScene{.name = names[k], .file = files[k]});
+    const Stopwatch watch;
+    try {
+      compare(options_for(options, files[k]), scene);
+    } catch (const SolverError& error) {
+      scene.skipped = error.what();
+    }
+    if (files.size() > 1)
+      fmt::print(stderr, "{}/{} {}: {}\n", k + 1, files.size(), scene.name,
+                 scene.skipped.empty() ? fmt::format("{:.2g} s", watch.seconds()) : scene.skipped);
+  }
+  return scenes;
+}
+
+void measure_again(const timestep::Question& question, timestep::Comparison& comparison) {
+  for (timestep::Estimate& estimate : comparison.estimates) {
+    const timestep::Estimator* estimator = timestep::find_estimator(estimate.name);
+    double total = estimate.seconds;
+    for (int k = 0; k < most_calls && total < enough_time; ++k) {
+      const Stopwatch watch;
+      estimator->find(question);
+      const double seconds = watch.seconds();
+      estimate.seconds = std::min(estimate.seconds, seconds);
+      total += seconds;
+    }
+  }
+}
+
+double seconds_of_product(const assembly::LinearSystem& system) {
+  assembly::StiffnessProduct product(system.unknowns, system.elements, system.inverse_sqrt_mass());
+  const auto n = static_cast<std::size_t>(product.size());
+  std::vector<double> x(n, 1.0);
+  std::vector<double> y(n);
+  product.apply(x, y);  // pages and caches
+  double least = std::numeric_limits<double>::infinity();
+  double total = 0;
+  for (int k = 0; k < most_calls && (total < enough_time || k < fewest_calls); ++k) {
+    const Stopwatch watch;
+    product.apply(x, y);
+    const double seconds = watch.seconds();
+    least = std::min(least, seconds);
+    total += seconds;
+  }
+  return least;
+}
+
+}  // namespace eigengrain::app
