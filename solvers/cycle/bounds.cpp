@@ -71,14 +71,6 @@ LinearSystem stiffened_by_dashpots(const LinearSystem& system) {
   return result;
 }
 
-/// The system with C in place of K.
-LinearSystem viscosity_alone(const LinearSystem& system) {
-  LinearSystem result = system;
-  for (std::size_t e = 0; e < result.elements.size(); ++e)
-    result.elements[e].stiffness = {.normal = result.damping[e].normal, .shear = result.damping[e].shear};
-  return result;
-}
-
 }  // namespace
 
 double damped_timestep(double undamped_dt, double local_damping) {
@@ -143,23 +135,6 @@ double scaled_block_bound(const LinearSystem& system, int sweeps) {
   BlockBound bound(system);
   for (int sweep = 0; sweep < sweeps; ++sweep) bound.sweep();
   return bound.timestep();
-}
-
-double damped_block_bound(const LinearSystem& system, double local_damping, int sweeps) {
-  const double elastic = damped_timestep(scaled_block_bound(system, sweeps), local_damping);
-  if (system.damping.empty() || !(elastic > 0)) return elastic;
-  // With λ(μ) the largest eigenvalue of (1 + α)M⁻¹(K + μC), which rises with μ, any μ with μ² >= λ(μ) will
-  // do. The root of μ² = b_K + μ b_C does, as λ(μ) <= b_K + μ b_C; and then μ' = √b with any bound b of λ(μ)
-  // that is less than μ²: λ(μ') <= λ(μ) <= μ'².
-  const LinearSystem viscous = viscosity_alone(system);
-  const auto rate = [](double dt) { return 4 / (dt * dt); };
-  const double b_elastic = rate(elastic);
-  const double b_viscous = rate(damped_timestep(block_bound(viscous), local_damping));
-  double mu = 0.5 * (b_viscous + std::sqrt(b_viscous * b_viscous + 4 * b_elastic));
-  for (int refinement = 0; refinement < 4; ++refinement)
-    mu = std::min(mu,
-                  2 / damped_timestep(scaled_block_bound(with_viscosity(system, mu), sweeps), local_damping));
-  return 2 / mu;
 }
 
 }  // namespace eigengrain::cycle

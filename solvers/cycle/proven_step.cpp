@@ -33,15 +33,10 @@ std::vector<std::int32_t> bodies_apart(const assembly::State& state, const assem
   return varies ? assembly::LinearSystem(state.model).unknowns.set_aside() : listed.unknowns.set_aside();
 }
 
-std::vector<double> alike(double damping, const assembly::LinearSystem& system) {
-  if (damping == 0) return {};
-  return std::vector<double>(static_cast<std::size_t>(system.unknowns.bodies()), damping);
-}
-
 double proven_step(const assembly::State& state, bool varies) {
   const assembly::LinearSystem system(state.model, assembly::Listed::all);
   const std::vector<std::int32_t> apart = bodies_apart(state, system, varies);
-  StepProver prover(system, alike(assembly::largest_damping(state.model), system));
+  StepProver prover(system, assembly::largest_damping(state.model));
   return std::min(prover.sharpen(std::numeric_limits<double>::infinity(), content),
                   first_contact(state, apart, fastest_approach(state)).bound);
 }

@@ -19,9 +19,6 @@ bool stiffness_varies(const model::Scene& settings);
 std::vector<std::int32_t> bodies_apart(const assembly::State& state, const assembly::LinearSystem& listed,
                                        bool varies);
 
-/// [bodies] One α for all, or nothing where it is zero: what StepProver takes.
-std::vector<double> alike(double damping, const assembly::LinearSystem& system);
-
 /// The step that is proven stable until the next list: of all listed pairs as if they acted, and of first
 /// contacts, s.
 double proven_step(const assembly::State& state, bool varies);

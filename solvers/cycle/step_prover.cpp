@@ -49,8 +49,11 @@ StepProver::StepProver(const assembly::LinearSystem& system, std::span<const dou
       blocks_(std::make_unique<BodyBlocks>(system, divisors(local_damping))),
       weight_(static_cast<std::size_t>(blocks_->bodies()), 1.0),
       ceiling_(weight_.size(), 0.0) {}
+StepProver::StepProver(const assembly::LinearSystem& system, double local_damping)
+    : StepProver(system, std::vector<double>(
+                             local_damping > 0 ? static_cast<std::size_t>(system.unknowns.bodies()) : 0,
+                             local_damping)) {}
 StepProver::~StepProver() = default;
-StepProver::StepProver(StepProver&&) noexcept = default;
 
 void StepProver::set_weights(std::vector<double> weights) {
   weight_ = std::move(weights);

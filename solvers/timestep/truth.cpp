@@ -4,6 +4,7 @@
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/cycle/step_prover.hpp"
 #include "eigengrain/petsc/session.hpp"
 
 #include "certificate.hpp"
@@ -49,11 +50,8 @@ struct Problem {
   double largest_damping = 0;  ///< α, for bounds
   bool dashpots = false;
 
-  /// A step that is proven without the whole system, s.
-  double bound(int sweeps) const {
-    return dashpots || largest_damping > 0 ? cycle::damped_block_bound(system, largest_damping, sweeps)
-                                           : cycle::scaled_block_bound(system, sweeps);
-  }
+  /// What proves steps without the whole system.
+  cycle::StepProver prover() const { return cycle::StepProver(system, largest_damping); }
 
   std::vector<contact::ContactElement> elements(double mu) const {
     return dashpots ? assembly::with_viscosity(system, mu).elements : system.elements;
@@ -78,7 +76,7 @@ Found search(const Problem& problem, const TruthOptions& options) {
     StiffnessProduct viscosity(problem.system.unknowns, assembly::viscous_elements(problem.system),
                                problem.scale);
     const Eigenpair pair =
-        largest_quadratic_eigenpair(stiffness, viscosity, problem.scale, 2 / problem.bound(0), options);
+        largest_quadratic_eigenpair(stiffness, viscosity, problem.scale, 2 / problem.prover().bound(), options);
     found.rate = pair.value * pair.value;
     found.residual = pair.residual;
     found.mode = mode_of(pair.vector.get(), problem.scale);
@@ -98,9 +96,8 @@ Found search(const Problem& problem, const TruthOptions& options) {
 bool prove(const Problem& problem, Found& found) {
   const Stopwatch watch;
   const double wanted = found.rate * (1 + margin);
-  const double bound = problem.bound(3);
-  if (const double rate = 4 / (bound * bound); rate <= wanted) {
-    found.proof = {.by = ProofBy::bound, .dt = bound, .sigma = rate, .seconds = watch.seconds()};
+  if (const double dt = 2 / std::sqrt(wanted); problem.prover().prove(dt)) {
+    found.proof = {.by = ProofBy::bound, .dt = dt, .sigma = wanted, .seconds = watch.seconds()};
     return true;
   }
   const double mu = std::sqrt(wanted);

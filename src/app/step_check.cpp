@@ -15,9 +15,7 @@ namespace eigengrain::app {
 StepVerdict judge_step(const assembly::State& state, double dt) {
   const assembly::LinearSystem system(state.model);
   const double damping = assembly::largest_damping(state.model);
-  cycle::StepProver prover(
-      system, damping > 0 ? std::vector<double>(static_cast<std::size_t>(system.unknowns.bodies()), damping)
-                          : std::vector<double>());
+  cycle::StepProver prover(system, damping);
   StepVerdict verdict{.dt = dt, .limit = prover.bound()};
   verdict.safe = dt <= verdict.limit || prover.prove(dt);
   if (verdict.safe) return verdict;

@@ -118,20 +118,6 @@ std::vector<std::string> passes(const model::Scene& scene, const assembly::Model
   return parts;
 }
 
-const char* policy_name(model::TimestepPolicy policy) {
-  switch (policy) {
-    case model::TimestepPolicy::fixed:
-      return "fixed";
-    case model::TimestepPolicy::bound:
-      return "bound";
-    case model::TimestepPolicy::tracked:
-      return "tracked";
-    case model::TimestepPolicy::estimate:
-      break;
-  }
-  return "estimate";
-}
-
 /// "set 2 keys, more balls, groups, 1 change of bodies, run, save".
 std::string stage_text(const model::Stage& stage) {
   std::vector<std::string> parts;
@@ -162,7 +148,7 @@ void print_settings(const model::Scene& scene, const model::Bodies& bodies) {
   else if (scene.timestep.dt)
     fmt::print("  timestep    fixed, {:g} s\n", *scene.timestep.dt);
   else
-    fmt::print("  timestep    {}, safety {:g}\n", policy_name(scene.timestep.policy), scene.timestep.safety);
+    fmt::print("  timestep    {}, safety {:g}\n", model::name_of(scene.timestep.policy), scene.timestep.safety);
   if (scene.run.steps) fmt::print("  run         {}\n", counted(*scene.run.steps, "step", "steps"));
   if (scene.run.time) fmt::print("  run         until t = {:g} s\n", *scene.run.time);
   if (scene.run.unbalanced)

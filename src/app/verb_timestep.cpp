@@ -6,6 +6,7 @@
 #include "eigengrain/timestep/empirical_limit.hpp"
 #include "eigengrain/timestep/tangent_spectrum.hpp"
 
+#include "comparison_json.hpp"
 #include "input.hpp"
 #include "text.hpp"
 #include "verbs.hpp"
@@ -38,6 +39,8 @@ PolicyStep policy_step(const assembly::State& state) {
     how = fmt::format("mass scaling: {:g} of what is proven for all near pairs", choice.safety);
   else if (choice.policy == model::TimestepPolicy::bound)
     how = fmt::format("bound: {:g} of what is proven for all near pairs", choice.safety);
+  else if (choice.policy == model::TimestepPolicy::tracked)
+    how = fmt::format("tracked: {:g} of what is proven for the contacts and what is about to touch", choice.safety);
   else if (choice.policy == model::TimestepPolicy::estimate)
     how = fmt::format("estimate: {:g} of diagonal", choice.safety);
   // A run that goes on has its step already.
@@ -45,57 +48,12 @@ PolicyStep policy_step(const assembly::State& state) {
   return {std::move(how), dt};
 }
 
-/// JSON has no infinity: a step without limit is null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json to_json(const timestep::Proof& proof) {
-  if (proof.by == timestep::ProofBy::none) return nullptr;
-  return {{"by", timestep::name_of(proof.by)},
-          {"dt", proof.dt},
-          {"sigma", proof.sigma},
-          {"seconds", proof.seconds}};
-}
-
 ordered_json to_json(const Comparison& c, const PolicyStep& policy) {
-  ordered_json estimates = ordered_json::array();
-  for (const Estimate& e : c.estimates) {
-    estimates.push_back({{"name", e.name},
-                         {"dt", number(e.dt)},
-                         {"ratio_to_true", number(e.ratio_to_true)},
-                         {"safe", e.safe},
-                         {"claim", timestep::name_of(e.claim)},
-                         {"source", e.source},
-                         {"seconds", e.seconds},
-                         {"products", e.products}});
-    if (e.claim == timestep::Claim::probable) estimates.back()["failure"] = e.failure;
-    if (e.range) estimates.back()["range"] = {number(e.range->least), number(e.range->largest)};
-  }
-  ordered_json left_out = ordered_json::array();
-  for (const timestep::LeftOut& none : c.left_out)
-    left_out.push_back({{"name", none.name}, {"reason", none.reason}});
-  return {{"bodies", c.bodies},
-          {"contacts", c.contacts},
-          {"unknowns", c.unknowns},
-          {"set_aside", c.set_aside},
-          {"true",
-           {{"dt", number(c.truth.dt)},
-            {"limit", number(c.truth.limit)},
-            {"lambda_max", c.truth.lambda_max},
-            {"residual", c.truth.residual},
-            {"limit_residual", c.truth.limit_residual},
-            {"certified", c.truth.certified},
-            {"proof", to_json(c.truth.proof)},
-            {"limit_proof", to_json(c.truth.limit_proof)},
-            {"seconds", c.truth.seconds},
-            {"products", c.truth.products}}},
-          {"estimates", estimates},
-          {"left_out", left_out},
-          {"policy",
-           {{"dt", number(policy.dt)},
-            {"ratio_to_limit", number(policy.dt / c.truth.limit)},
-            {"safe", policy.dt <= c.truth.limit}}}};
+  ordered_json report = comparison_json(c);
+  report["policy"] = {{"dt", json_number(policy.dt)},
+                      {"ratio_to_limit", json_number(policy.dt / c.truth.limit)},
+                      {"safe", policy.dt <= c.truth.limit}};
+  return report;
 }
 
 ordered_json to_json(const timestep::Eigenvalue& e, double dt) {
@@ -160,11 +118,11 @@ void print_policy(const PolicyStep& policy, const Comparison& c) {
 }
 
 ordered_json to_json(const timestep::EmpiricalLimit& found, const timestep::Truth& truth) {
-  return {{"dt", number(found.dt)},
-          {"stable", number(found.stable)},
-          {"growing", number(found.growing)},
-          {"ratio_to_true", number(found.dt / truth.dt)},
-          {"ratio_to_limit", number(found.dt / truth.limit)},
+  return {{"dt", json_number(found.dt)},
+          {"stable", json_number(found.stable)},
+          {"growing", json_number(found.growing)},
+          {"ratio_to_true", json_number(found.dt / truth.dt)},
+          {"ratio_to_limit", json_number(found.dt / truth.limit)},
           {"linear", found.linear()},
           {"reservations", found.reservations},
           {"runs", found.runs},

@@ -81,9 +81,6 @@ void read_damping(const Section& root, SceneDraft& draft) {
 
 namespace {
 
-/// Of a step that is proven for what touches.
-constexpr double tracked_safety = 0.98;
-
 /// A number of steps, or zero for "auto".
 std::int64_t read_every(const Section& section) {
   const std::string given = section.text("every").value_or("auto");
@@ -107,14 +104,10 @@ void read_timestep(const Section& root, SceneDraft& draft) {
   const auto policy = section->text("policy");
   if (!policy) return;
   const bool fixed = *policy == "fixed";
-  if (fixed)
-    choice.policy = model::TimestepPolicy::fixed;
-  else if (*policy == "bound")
-    choice.policy = model::TimestepPolicy::bound;
-  else if (*policy == "tracked") {
-    choice.policy = model::TimestepPolicy::tracked;
-    if (!section->has("safety")) choice.safety = tracked_safety;
-  }
+  using enum model::TimestepPolicy;
+  for (const model::TimestepPolicy known : {estimate, bound, tracked, model::TimestepPolicy::fixed})
+    if (*policy == model::name_of(known)) choice.policy = known;
+  if (!section->has("safety")) choice.safety = model::default_safety(choice.policy);
   if (section->has("every") && (fixed || *policy == "estimate"))
     section->report(
         "every", fmt::format("has no meaning with policy {}; remove it, or write policy: tracked", *policy));

@@ -94,8 +94,9 @@ std::vector<KeyDescription> run_keys() {
        .fallback = "auto",
        .example = "200",
        .description =
-           "steps after which policies `bound` and `tracked` prove a step anew even if nothing asks for "
-           "it; `auto`: 500 with `tracked`, and with `bound` only where near pairs do not say it all"},
+           "steps after which the policy is asked again even if nothing calls for it; `auto`: 500 with `tracked`, "
+           "100 with `estimate` (5 where stiffness follows the overlap), with `bound` only where near pairs do "
+           "not say it all"},
       {.path = "timestep.dt",
        .kind = quantity,
        .unit = "s",

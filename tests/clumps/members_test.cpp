@@ -47,7 +47,9 @@ TEST(Members, KeepTheirRowsWhenBodiesAreSorted) {
       EXPECT_EQ(clumps.owner(row), clumps.holder(c));
     }
   for (std::int32_t row = 0; row < bodies.size(); ++row)
-    if (bodies.identity[static_cast<std::size_t>(row)] < 20) EXPECT_EQ(clumps.owner(row), row);
+    if (bodies.identity[static_cast<std::size_t>(row)] < 20) {
+      EXPECT_EQ(clumps.owner(row), row);
+    }
   // And where they are.
   model::Bodies placed = bodies;
   model::place_members(placed);
@@ -116,8 +118,9 @@ TEST(Members, ForcesComeTogetherAboutTheCentre) {
   assembly::gather_members(model.bodies, {}, gathered);
   EXPECT_LT((total(gathered) - total(forces)).norm(), 1e-13);
   for (const std::int32_t row : model.bodies.clumps.members(0))
-    if (row != model.bodies.clumps.holder(0))
+    if (row != model.bodies.clumps.holder(0)) {
       EXPECT_EQ(gathered.force[static_cast<std::size_t>(row)], Vec3(Vec3::Zero()));
+    }
 }
 
 TEST(Members, TurnExactlyInTrialDisplacements) {

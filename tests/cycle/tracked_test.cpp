@@ -131,7 +131,7 @@ TEST(Tracked, SaysWhatItTakesOfEvery) {
             std::string::npos);
   EXPECT_NE(message("{policy: tracked, every: 0}").find("neither auto nor a whole number"),
             std::string::npos);
-  EXPECT_NE(message("{policy: estimate, every: 200}").find("policy: tracked"), std::string::npos);
+  EXPECT_NE(message("{policy: fixed, dt: 1e-5, every: 200}").find("policy: tracked"), std::string::npos);
 }
 
 TEST(Tracked, HasItsOwnSafety) {

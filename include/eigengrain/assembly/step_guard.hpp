@@ -18,11 +18,9 @@ struct StepGuard {
   std::int64_t step = 0;       ///< when it was made
   // What the next proof begins with (cycle/tracked_step.hpp).
   std::vector<double> weight;  ///< [bodies] d
-  double reach = 0;            ///< room of a body at rest, m
   double gain = 1;             ///< step over the block bound when last proven from scratch
-  std::int64_t proofs = 0;     ///< made so far
-  std::int64_t pause = 1;      ///< tries of a larger step that are left out
-  std::int64_t last_pause = 1;
+  std::int64_t pause = 0;      ///< proofs until a larger step is tried
+  std::int64_t last_pause = 0;
 };
 
 }  // namespace eigengrain::assembly

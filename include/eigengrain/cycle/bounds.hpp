@@ -59,9 +59,4 @@ double block_bound(const assembly::LinearSystem& system);
 /// BlockBound after some sweeps, s. Three prove 0.93-0.96 of the true step in dense packings.
 double scaled_block_bound(const assembly::LinearSystem& system, int sweeps = 3);
 
-/// A proven lower bound of the largest stable step of the cycle with local damping α and dashpots,
-/// Δt = 2/μ, s: μ is such that μ² M/(1 + α) - μ C - K is positive definite, by the scaled block bound of
-/// (1 + α) M⁻¹(K + μC) (docs/theory.md). Without dashpots it is damped_timestep(scaled_block_bound).
-double damped_block_bound(const assembly::LinearSystem& system, double local_damping, int sweeps = 3);
-
 }  // namespace eigengrain::cycle

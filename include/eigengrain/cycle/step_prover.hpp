@@ -27,8 +27,9 @@ class StepProver {
   ///
   /// local_damping  [bodies] α of each, or empty where none is damped
   explicit StepProver(const assembly::LinearSystem& system, std::span<const double> local_damping = {});
+  /// The same with one α for all.
+  StepProver(const assembly::LinearSystem& system, double local_damping);
   ~StepProver();
-  StepProver(StepProver&&) noexcept;
 
   /// A step that the present weights prove, within a percent of the largest, s: with those of a new prover
   /// the block bound. Infinite where nothing resists.

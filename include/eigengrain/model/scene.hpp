@@ -51,6 +51,26 @@ struct ContactRule {
 
 enum class TimestepPolicy { estimate, fixed, bound, tracked };
 
+/// As scene files write it.
+constexpr std::string_view name_of(TimestepPolicy policy) {
+  switch (policy) {
+    case TimestepPolicy::fixed:
+      return "fixed";
+    case TimestepPolicy::bound:
+      return "bound";
+    case TimestepPolicy::tracked:
+      return "tracked";
+    case TimestepPolicy::estimate:
+      break;
+  }
+  return "estimate";
+}
+
+/// The fraction of its step that a policy takes where a scene does not say it.
+constexpr double default_safety(TimestepPolicy policy) {
+  return policy == TimestepPolicy::tracked ? 0.98 : 0.8;
+}
+
 struct TimestepChoice {
   TimestepPolicy policy = TimestepPolicy::estimate;
   double safety = 0.8;       ///< fraction of the estimate or bound in use

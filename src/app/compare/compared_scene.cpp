@@ -27,15 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The policies of scene files that find a step by themselves, with their default safety.
-struct KnownPolicy {
-  std::string_view name;
-  model::TimestepPolicy policy;
-  double safety;
-};
-constexpr std::array known_policies{KnownPolicy{"estimate", model::TimestepPolicy::estimate, 0.8},
-                                    KnownPolicy{"bound", model::TimestepPolicy::bound, 0.8},
-                                    KnownPolicy{"tracked", model::TimestepPolicy::tracked, 0.98}};
+/// The policies of scene files that find a step by themselves.
+constexpr std::array policies{model::TimestepPolicy::estimate, model::TimestepPolicy::bound,
+                              model::TimestepPolicy::tracked};
 
 /// The first call is that of cold caches, and machines have other things to do: the least of some counts, as
 /// many as fit into this time.
@@ -89,11 +83,11 @@ void check_all(const std::vector<std::string>& files, const Options& options) {
 std::vector<PolicyStep> steps_of_policies(const assembly::State& state, double limit) {
   std::vector<PolicyStep> steps;
   if (state.settings.mass_scaling) return steps;  // masses follow the step there, not the other way round
-  for (const KnownPolicy& known : known_policies) {
+  for (const model::TimestepPolicy policy : policies) {
     model::Scene settings = state.settings;
-    settings.timestep = model::TimestepChoice{.policy = known.policy, .safety = known.safety, .dt = {}};
+    settings.timestep = {.policy = policy, .safety = model::default_safety(policy), .dt = {}};
     const double dt = cycle::policy_of(settings).dt(state);
-    steps.push_back({std::string(known.name), dt, dt <= limit});
+    steps.push_back({std::string(model::name_of(policy)), dt, dt <= limit});
   }
   return steps;
 }

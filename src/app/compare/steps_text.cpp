@@ -1,3 +1,4 @@
+#include "../comparison_json.hpp"
 #include "../text.hpp"
 #include "steps_report.hpp"
 
@@ -23,10 +24,10 @@ std::string order_text(const std::optional<double>& order) {
 }
 
 ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+  return json_number(value);
 }
 ordered_json number(const std::optional<double>& value) {
-  return value ? number(*value) : ordered_json(nullptr);
+  return value ? json_number(*value) : ordered_json(nullptr);
 }
 
 ordered_json json_of(const Statistics& s) {

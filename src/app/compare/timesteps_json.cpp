@@ -1,3 +1,4 @@
+#include "../comparison_json.hpp"
 #include "standing.hpp"
 #include "timesteps_report.hpp"
 
@@ -10,54 +11,22 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// JSON has no infinity: a step without limit is null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json json_of(const ComparedScene& scene, const timestep::Estimate& e) {
-  ordered_json result{{"name", e.name},
-                      {"dt", number(e.dt)},
-                      {"ratio_to_true", number(e.ratio_to_true)},
-                      {"safe", e.safe},
-                      {"claim", timestep::name_of(e.claim)},
-                      {"source", e.source},
-                      {"seconds", e.seconds},
-                      {"products", e.products},
-                      {"equivalent_products", number(equivalent_products(scene, e))}};
-  if (e.claim == timestep::Claim::probable) result["failure"] = e.failure;
-  if (e.range) result["range"] = {number(e.range->least), number(e.range->largest)};
-  return result;
-}
-
 ordered_json json_of(const ComparedScene& scene) {
-  if (!scene.skipped.empty()) return {{"name", scene.name}, {"file", scene.file}, {"skipped", scene.skipped}};
+  ordered_json result{{"name", scene.name}, {"file", scene.file}};
+  if (!scene.skipped.empty()) {
+    result["skipped"] = scene.skipped;
+    return result;
+  }
   const timestep::Comparison& c = scene.comparison;
-  ordered_json result{{"name", scene.name},
-                      {"file", scene.file},
-                      {"bodies", c.bodies},
-                      {"contacts", c.contacts},
-                      {"unknowns", c.unknowns},
-                      {"set_aside", c.set_aside},
-                      {"product_seconds", scene.product_seconds},
-                      {"true",
-                       {{"dt", c.truth.dt},
-                        {"limit", c.truth.limit},
-                        {"lambda_max", c.truth.lambda_max},
-                        {"residual", c.truth.residual},
-                        {"certified", c.truth.certified},
-                        {"seconds", c.truth.seconds},
-                        {"products", c.truth.products}}},
-                      {"estimates", ordered_json::array()},
-                      {"left_out", ordered_json::array()},
-                      {"policies", ordered_json::array()}};
-  for (const timestep::Estimate& e : c.estimates) result["estimates"].push_back(json_of(scene, e));
-  for (const timestep::LeftOut& none : c.left_out)
-    result["left_out"].push_back({{"name", none.name}, {"reason", none.reason}});
+  result.update(comparison_json(c));
+  result["product_seconds"] = scene.product_seconds;
+  for (std::size_t k = 0; k < c.estimates.size(); ++k)
+    result["estimates"][k]["equivalent_products"] = json_number(equivalent_products(scene, c.estimates[k]));
+  result["policies"] = ordered_json::array();
   for (const PolicyStep& policy : scene.policies)
     result["policies"].push_back({{"name", policy.name},
-                                  {"dt", number(policy.dt)},
-                                  {"ratio_to_limit", number(policy.dt / c.truth.limit)},
+                                  {"dt", json_number(policy.dt)},
+                                  {"ratio_to_limit", json_number(policy.dt / c.truth.limit)},
                                   {"safe", policy.safe}});
   return result;
 }
@@ -68,19 +37,19 @@ ordered_json json_of(const Standing& s) {
           {"claim", timestep::name_of(s.claim)},
           {"scenes", s.scenes},
           {"unsafe", s.unsafe},
-          {"smallest_ratio", number(s.smallest)},
-          {"median_ratio", number(s.median)},
-          {"largest_ratio", number(s.largest)},
+          {"smallest_ratio", json_number(s.smallest)},
+          {"median_ratio", json_number(s.median)},
+          {"largest_ratio", json_number(s.largest)},
           {"largest_in", s.largest_in},
-          {"median_equivalent_products", number(s.median_products)}};
+          {"median_equivalent_products", json_number(s.median_products)}};
 }
 
 ordered_json json_of(const RunLengths& lengths) {
   ordered_json result{
-      {"name", lengths.name}, {"median", number(lengths.median())}, {"scenes", ordered_json::array()}};
+      {"name", lengths.name}, {"median", json_number(lengths.median())}, {"scenes", ordered_json::array()}};
   for (const RunLength& length : lengths.lengths)
     result["scenes"].push_back(
-        {{"name", length.scene}, {"relative_steps", number(length.relative_steps)}, {"safe", length.safe}});
+        {{"name", length.scene}, {"relative_steps", json_number(length.relative_steps)}, {"safe", length.safe}});
   return result;
 }
 
@@ -107,7 +76,7 @@ ordered_json json_of_all(const Items& items) {
 nlohmann::ordered_json to_json(const TimestepsReport& report) {
   ordered_json growth = ordered_json::array();
   for (const Growth& g : growth_of(report.sizes))
-    growth.push_back({{"name", g.name}, {"exponent", number(g.exponent)}});
+    growth.push_back({{"name", g.name}, {"exponent", json_number(g.exponent)}});
   return {{"subject", "timesteps"},
           {"scenes", json_of_all(report.scenes)},
           {"estimates", json_of_all(standings_of(report.scenes))},
