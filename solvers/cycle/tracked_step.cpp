@@ -131,7 +131,6 @@ void prove_again(StepProver& prover, StepGuard& guard) {
 
 std::optional<StepGuard> track_step(const State& state) {
   if (!can_track(state)) return std::nullopt;
-  Stopwatch watch;
   StepGuard guard;
   guard.step = state.step;
   guard.reach = reach_of(state);
@@ -152,10 +151,6 @@ std::optional<StepGuard> track_step(const State& state) {
   }
   if (!std::isfinite(guard.dt)) return std::nullopt;
   guard.weight = prover.weights();
-  fprintf(stderr, "%ld dt %.5e gain %.3f reach %.2e pause %ld/%ld elements %zu looked %.2f  %.2f ms\n",
-          long(state.step), guard.dt, guard.reach / 1e-3, long(guard.pause), long(guard.last_pause),
-          system.elements.size(), double(prover.blocks_looked_at()) / guard.room.size(),
-          watch.seconds() * 1e3);
   return guard;
 }
 

@@ -6,6 +6,8 @@
 #include "eigengrain/timestep/comparison.hpp"
 #include "eigengrain/timestep/truth.hpp"
 
+#include "timestep/sparse_factor.hpp"
+
 #include "support/clumps.hpp"
 #include "support/lattices.hpp"
 
