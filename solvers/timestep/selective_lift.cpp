@@ -149,7 +149,10 @@ SelectiveLift lift_step(const assembly::Model& model, double wished, const Truth
   const Truth before = lifter.truth(system, Certify::never);
   require_longer(wished, before.limit);
 
-  SelectiveLift result{.wished = wished, .limit_before = before.limit, .mass = moving_mass(model)};
+  SelectiveLift result;
+  result.wished = wished;
+  result.limit_before = before.limit;
+  result.mass = moving_mass(model);
   const Attempt by_weights = lifter.attempt(wished);
   result.added_by_weights = by_weights.lift.added;
   result.added_differential = lifter.differential(wished);
@@ -158,8 +161,8 @@ SelectiveLift lift_step(const assembly::Model& model, double wished, const Truth
   result.lift = lifter.search(wished, by_weights).lift;
   LinearSystem after = cycle::lifted(system, result.lift.factor);
   result.after = lifter.truth(after, options.certify);
-  // What no factorisation has proven is left to the proof by weights.
-  if (!result.after.certified || result.after.limit_proof.dt < wished) {
+  result.by_eigenvalue = result.after.certified && result.after.limit_proof.dt >= wished;
+  if (!result.by_eigenvalue) {  // what nothing has proven is left to the weights
     result.lift = by_weights.lift;
     after = cycle::lifted(system, result.lift.factor);
     result.after = lifter.truth(after, options.certify);

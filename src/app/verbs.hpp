@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct Options {
   bool tangent = false;                ///< of timestep: what the elastic stiffness leaves out
   bool certify = false;                ///< of timestep: prove the truth at any size
   bool empirical = false;              ///< of timestep: the limit by running, too
+  int modes = 0;                       ///< of timestep: how many of the modes that limit the step; 0: none
+  std::string modes_file;              ///< of timestep: their shapes; empty: none
+  std::optional<double> lift;          ///< of timestep: the step that masses are to make stable, s
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.

@@ -18,7 +18,9 @@ inline constexpr int compared_modes = 6;
 struct SelectiveLift {
   double wished = 0;        ///< step of the cycle, damping included, s
   double limit_before = 0;  ///< its true limit with the present masses, s
-  cycle::Lift lift;         ///< chosen by the eigenvalue: the true limit is what is wished
+  cycle::Lift lift;
+  /// Whether the lift is one whose true limit is what is wished; else it is what the weights alone prove.
+  bool by_eigenvalue = false;
   Truth after;              ///< of the lifted system
   double mass = 0;          ///< of all bodies that can move, kg
   /// What the same step costs otherwise, kg: with the weights of the bodies as the only proof; each body by
