@@ -24,13 +24,13 @@ constexpr std::int64_t chunk_size = 256;
 constexpr double content = 1.02;
 
 /// Width over which the kink of max(1, λ/μ²) is rounded off, in the first sweep and in the last.
-constexpr double first_width = 0.1;
+constexpr double first_width = 0.03;
 constexpr double last_width = 0.002;
 /// No weight changes by more than this in a sweep, first and last (of its logarithm).
 constexpr double first_stride = 0.2;
 constexpr double last_stride = 0.005;
 /// Bodies that carry less than this part of the slope take no part in a sweep.
-constexpr double negligible = 1e-6;
+constexpr double negligible = 1e-3;
 
 /// A lift by less than this is tried to be done without, by raising weights.
 constexpr std::array smallest_lifts{0.1, 0.03, 0.01, 0.003};

@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/bonds.hpp"
+#include "eigengrain/cycle/mass_scaling.hpp"
 
 #include "explicit_run.hpp"
 #include "interrupt.hpp"
@@ -26,6 +27,16 @@ nlohmann::ordered_json to_json(const CycleWork& work, const State& state, double
   add_balance(report, assembly::balance_of(state));
   add_energies(report, state);
   if (state.ledger) add_ledger(report, state);
+  if (const auto& scaling = state.settings.mass_scaling) {
+    const cycle::ScaledMasses masses = cycle::scaled_masses(state.model.bodies);
+    report["mass_scaling"] = {{"form", model::name_of(scaling->form)},
+                              {"bodies", masses.bodies},
+                              {"heavier", masses.heavier},
+                              {"largest_factor", masses.largest},
+                              {"mass", masses.mass},
+                              {"added", masses.added},
+                              {"added_part", masses.mass > 0 ? masses.added / masses.mass : 0.0}};
+  }
   const std::int64_t bonds = assembly::count_bonds(state.model);
   if (bonds > 0 || work.broken > 0) report["bonds"] = {{"intact", bonds}, {"broken", work.broken}};
   return report;
@@ -45,6 +56,12 @@ void conclude(const CycleWork& work, const State& state, const std::filesystem::
   fmt::print("{}: {} in {}, t = {:.6g} s", state.settings.name, counted(work.steps, "step", "steps"),
              duration_text(work.seconds), state.time);
   if (rate > 0) fmt::print(", {:.3g} million ball steps a second", 1e-6 * rate);
+  if (report.contains("mass_scaling")) {
+    const nlohmann::ordered_json& masses = report["mass_scaling"];
+    fmt::print("\nmasses: {} of {} bodies are heavier, by {:.3g} times at most; {:+.3g}% of mass in all",
+               grouped(masses["heavier"]), grouped(masses["bodies"]),
+               masses["largest_factor"].get<double>(), 100 * masses["added_part"].get<double>());
+  }
   if (report.contains("bonds"))
     fmt::print("\nbonds: {} intact, {} broken", grouped(report["bonds"]["intact"]), grouped(work.broken));
   fmt::print("\n{}\nstate: {}\n", balance_text(assembly::balance_of(state)), state_file.string());
