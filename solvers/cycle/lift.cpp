@@ -174,6 +174,8 @@ Lift lift(const assembly::LinearSystem& system, std::span<const double> mass,
   Lifting lifting(system, mass, divisor, wished);
   Lift best = lifting.result(prover.weights());
   if (best.heavier == 0) return best;
+  Lift by_blocks = lifting.result(std::vector<double>(divisor.size(), 1.0));
+  if (by_blocks.added < best.added) best = std::move(by_blocks);
 
   std::vector<double> weight = best.weight;
   std::vector<double> best_weight = weight;

@@ -27,7 +27,7 @@ constexpr double reduction = 0.7;
 constexpr std::int64_t too_short = 20;    // steps
 constexpr std::int64_t long_enough = 60;  // steps
 /// A body that moves has the room for so many steps at twice its speed on top.
-constexpr double steps_of_room = 100;
+constexpr double steps_of_room = 200;
 
 /// When the contacts have become others the step is proven again, or, failing that, less of it.
 constexpr std::array fewer{0.995, 0.985, 0.97, 0.95, 0.92, 0.88};

@@ -77,11 +77,11 @@ void require_options_used() {
   }
   EIGENGRAIN_PETSC(PetscOptionsLeftRestore(nullptr, &count, &names, nullptr));
   if (!unused.empty())
-    throw InputError(
-        fmt::format("--petsc: nothing uses {}; timestep takes the options of SLEPc's EPS, e.g. -eps_ncv 80, "
-                    "relax those of "
-                    "PETSc's SNES behind relax_, e.g. -relax_ksp_type gmres",
-                    unused));
+    throw InputError(fmt::format(
+        "--petsc: nothing uses {}; timestep takes the options of SLEPc's EPS, e.g. -eps_ncv 80, and, with "
+        "dashpots, PEP (not up to 48 unknowns, which are dense), relax those of PETSc's SNES behind "
+        "relax_, e.g. -relax_ksp_type gmres",
+        unused));
 }
 
 void check(PetscErrorCode code, const char* call) {

@@ -56,18 +56,33 @@ void attend_ledger(State& state) {
       state.step, trouble.what, names, cause, outputs.saved_step(), outputs.state_file().string()));
 }
 
-cycle::Cycle started(State state) {
+}  // namespace
+
+cycle::Cycle ExplicitRun::started(State state, std::shared_ptr<Choosing> choosing) {
   attend_ledger(state);
   cycle::TimestepPolicy policy = cycle::policy_of(state.settings);  // before the state is moved
-  return {std::move(state), std::move(policy)};
+  if (policy.prepare)
+    policy.prepare = [prepare = policy.prepare, choosing](State& s) {
+      const Stopwatch watch;
+      prepare(s);
+      choosing->seconds += watch.seconds();
+    };
+  policy.dt = [dt = policy.dt, choosing](const State& s) {
+    const Stopwatch watch;
+    const double chosen = dt(s);
+    choosing->seconds += watch.seconds();
+    ++choosing->asked;
+    return chosen;
+  };
+  cycle::Cycle cycle(std::move(state), std::move(policy));
+  *choosing = {};  // the first one is not of the cycle's seconds
+  return cycle;
 }
-
-}  // namespace
 
 ExplicitRun::ExplicitRun(Input input)
     : goal_(input.state),
       outputs_(input),
-      cycle_(started(std::move(input.state))),
+      cycle_(started(std::move(input.state), choosing_)),
       watch_(cycle_.state()),
       verdict_(judge_step(state(), state().next_dt)),
       input_(std::move(input)),

@@ -11,6 +11,7 @@
 #include "step_check.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace eigengrain::app {
@@ -20,11 +21,16 @@ struct CycleWork {
   std::int64_t steps = 0;
   double seconds = 0;       ///< of the cycle alone
   std::int64_t broken = 0;  ///< bonds
+  /// How often the policy was asked for a step, and how much of `seconds` that took.
+  std::int64_t steps_chosen = 0;
+  double choosing_seconds = 0;
 
   CycleWork& operator+=(const CycleWork& other) {
     steps += other.steps;
     seconds += other.seconds;
     broken += other.broken;
+    steps_chosen += other.steps_chosen;
+    choosing_seconds += other.choosing_seconds;
     return *this;
   }
 };
@@ -43,9 +49,19 @@ class ExplicitRun {
   Input take_input();
   const Goal& goal() const { return goal_; }
   const RunOutputs& outputs() const { return outputs_; }
-  CycleWork work() const { return {state().step - first_step_, seconds_, broken_}; }
+  CycleWork work() const {
+    return {state().step - first_step_, seconds_, broken_, choosing_->asked, choosing_->seconds};
+  }
 
  private:
+  /// What was asked of the policy while the cycle ran.
+  struct Choosing {
+    std::int64_t asked = 0;
+    double seconds = 0;
+  };
+  /// A cycle whose policy is timed.
+  static cycle::Cycle started(assembly::State state, std::shared_ptr<Choosing> choosing);
+
   std::vector<assembly::BondBreak> take_breaks();
   void look();
   StepVerdict verdict_now() const;
@@ -54,6 +70,7 @@ class ExplicitRun {
 
   Goal goal_;
   RunOutputs outputs_;
+  std::shared_ptr<Choosing> choosing_ = std::make_shared<Choosing>();
   cycle::Cycle cycle_;
   cycle::Watch watch_;
   StepVerdict verdict_;

@@ -2,8 +2,8 @@
 
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/local_damping.hpp"
-#include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/cycle/policy.hpp"
+#include "eigengrain/cycle/step_prover.hpp"
 #ifdef EIGENGRAIN_PETSC
 #include "eigengrain/timestep/truth.hpp"
 #endif
@@ -15,8 +15,11 @@ namespace eigengrain::app {
 StepVerdict judge_step(const assembly::State& state, double dt) {
   const assembly::LinearSystem system(state.model);
   const double damping = assembly::largest_damping(state.model);
-  StepVerdict verdict{.dt = dt, .limit = cycle::damped_block_bound(system, damping)};
-  verdict.safe = dt <= verdict.limit;
+  cycle::StepProver prover(
+      system, damping > 0 ? std::vector<double>(static_cast<std::size_t>(system.unknowns.bodies()), damping)
+                          : std::vector<double>());
+  StepVerdict verdict{.dt = dt, .limit = prover.bound()};
+  verdict.safe = dt <= verdict.limit || prover.prove(dt);
   if (verdict.safe) return verdict;
 #ifdef EIGENGRAIN_PETSC
   verdict.limit =

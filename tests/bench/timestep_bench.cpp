@@ -1,6 +1,7 @@
 // The true critical timestep and its estimates, in seconds and in units of matrix-free products.
 #include "eigengrain/assembly/product.hpp"
 #include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/cycle/step_prover.hpp"
 #include "eigengrain/timestep/estimates.hpp"
 #include "eigengrain/timestep/truth.hpp"
 
@@ -70,6 +71,41 @@ void scaled_block_bound(benchmark::State& state) {
   in_products(state, p, [&] { benchmark::DoNotOptimize(cycle::scaled_block_bound(p, 3)); });
 }
 BENCHMARK(scaled_block_bound)->Apply(sizes_and_threads)->Iterations(5);
+
+/// A step of 0.95 of the truth proven from nothing, with what the prover sets up.
+void proof(benchmark::State& state) {
+  const Packing& p = packing(state.range(0));
+  const double wished = 0.95 * timestep::critical_timestep(p).dt;
+  double proven = 0;
+  in_products(state, p, [&] { proven = cycle::StepProver(p).sharpen(wished); });
+  state.counters["of_wished"] = proven / wished;
+}
+BENCHMARK(proof)->Apply(sizes_and_threads)->Iterations(5);
+
+/// The same step proven again after 0.3% of the contacts opened, or closed again.
+void proof_after_changes(benchmark::State& state) {
+  Packing p(scene_of(state.range(0)));
+  cycle::StepProver prover(p);
+  const double step = prover.sharpen(0.95 * timestep::critical_timestep(p).dt);
+  std::vector<std::int32_t> changed;
+  std::vector<contact::ContactStiffness> stiffness;
+  for (std::int64_t c = 0; c < p.contacts(); c += 333) {
+    changed.push_back(static_cast<std::int32_t>(c));
+    stiffness.push_back(p.elements[static_cast<std::size_t>(c)].stiffness);
+  }
+  bool closed = true;
+  bool proven = true;
+  in_products(state, p, [&] {
+    closed = !closed;
+    for (std::size_t k = 0; k < changed.size(); ++k)
+      p.elements[static_cast<std::size_t>(changed[k])].stiffness =
+          closed ? stiffness[k] : contact::ContactStiffness{};
+    prover.update(changed);
+    proven = prover.prove(step) && proven;
+  });
+  if (!proven) state.SkipWithError("the step could not be proven again");
+}
+BENCHMARK(proof_after_changes)->Apply(sizes_and_threads)->Iterations(20);
 
 /// Every estimate by its name, on one thread.
 void estimate(benchmark::State& state, const timestep::Estimator& estimator) {

@@ -185,12 +185,14 @@ balls: [{lattice: sc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03
 
     @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
     def test_petsc_options_reach_the_eigensolver(self):
-        done = self.run_program("timestep", self.scene(PAIR), "--petsc", "-eps_type no_such_solver")
+        larger = EXAMPLES / "scenes" / "packing_10k.yaml"  # small systems are dense
+        done = self.run_program("timestep", larger, "--petsc", "-eps_type no_such_solver")
         self.assertEqual(done.returncode, 1)
         self.assertIn("no_such_solver", done.stderr)
         done = self.run_program("timestep", self.scene(PAIR), "--petsc", "-eps_ncw 40")
         self.assertEqual(done.returncode, 1)
         self.assertIn("-eps_ncw", done.stderr)
+        self.assertIn("48 unknowns", done.stderr)
 
     @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
     def test_a_loose_eigenpair_does_not_pass_for_the_truth(self):

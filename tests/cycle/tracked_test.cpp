@@ -62,7 +62,7 @@ TEST(Tracked, TakesLargerStepsThanTheBoundOfAllNearPairs) {
   const auto step_after = [](const std::string& policy) {
     const model::Scene scene = scene_of(policy);
     Cycle cycle(cycle::start(scene), cycle::policy_of(scene));
-    cycle.run(3000);
+    cycle.run(8000);
     return cycle.state().next_dt;
   };
   const double bound = step_after("timestep: {policy: bound, safety: 0.98}\n");
