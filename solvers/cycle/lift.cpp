@@ -35,6 +35,9 @@ constexpr double negligible = 1e-3;
 /// A lift by less than this is tried to be done without, by raising weights.
 constexpr std::array smallest_lifts{0.1, 0.03, 0.01, 0.003};
 
+/// So that what holds exactly does not fail by rounding.
+constexpr double beyond_rounding = 1e-9;
+
 /// What a sweep finds out.
 struct Sweep {
   double added = 0;             ///< kg, by the weights as they were
@@ -141,7 +144,7 @@ Lift with_fewer(const assembly::LinearSystem& system, const Lifting& lifting,
   for (const double smallest : smallest_lifts) {
     std::vector<double> damping(divisor.begin(), divisor.end());
     for (std::size_t i = 0; i < damping.size(); ++i) {
-      const double c = best.factor[i] - 1 < smallest ? 1.0 : best.factor[i];
+      const double c = best.factor[i] - 1 < smallest ? 1.0 : best.factor[i] * (1 + beyond_rounding);
       damping[i] = damping[i] / c - 1;  // 1 + α is what the prover divides masses by
     }
     StepProver prover(system, damping);

@@ -2,6 +2,7 @@
 
 #include "eigengrain/base/error.hpp"
 
+#include "memory.hpp"
 #include "sparse_factor.hpp"
 
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 #include "eigengrain/petsc/session.hpp"
 
 #include "krylov.hpp"
+#include "memory.hpp"
 #include "sparse_factor.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -6,7 +6,7 @@
 #include "eigengrain/timestep/comparison.hpp"
 #include "eigengrain/timestep/truth.hpp"
 
-#include "timestep/sparse_factor.hpp"
+#include "timestep/memory.hpp"
 
 #include "support/clumps.hpp"
 #include "support/lattices.hpp"

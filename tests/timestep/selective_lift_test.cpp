@@ -207,7 +207,7 @@ TEST(LowModes, AreTheLeastOfTheDenseSpectrumThatAreNotZero) {
     const double largest = spectrum.maxCoeff();
     const timestep::LowModes low = timestep::low_modes(system, 6, largest);
     ASSERT_EQ(low.lambda.size(), 6U);
-    const auto* first = std::find_if(spectrum.begin(), spectrum.end(), [&](double x) { return x > low.floor; });
+    const auto first = std::find_if(spectrum.begin(), spectrum.end(), [&](double x) { return x > low.floor; });
     std::printf("%td motions not resisted, then %.3e of the largest\n", first - spectrum.begin(),
                 *first / largest);
     for (std::size_t k = 0; k < 6; ++k) {
