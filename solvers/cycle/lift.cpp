@@ -139,8 +139,8 @@ class Lifting {
 
 /// Weights with which fewer bodies are lifted: small lifts are taken away, and what then does not hold is
 /// raised.
-Lift with_fewer(const assembly::LinearSystem& system, const Lifting& lifting,
-                std::span<const double> divisor, double wished, Lift best) {
+Lift with_fewer(const assembly::LinearSystem& system, const Lifting& lifting, std::span<const double> divisor,
+                double wished, Lift best) {
   for (const double smallest : smallest_lifts) {
     std::vector<double> damping(divisor.begin(), divisor.end());
     for (std::size_t i = 0; i < damping.size(); ++i) {

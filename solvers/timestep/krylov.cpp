@@ -180,8 +180,8 @@ std::vector<Eigenpair> solve_dense(StiffnessProduct& product, Vec like_this, int
   std::vector<Eigenpair> pairs;
   for (int k = 1; k <= count; ++k) {
     const Eigen::Index column = solver.eigenvalues().size() - k;
-    Eigenpair& pair = pairs.emplace_back(
-        Eigenpair{.value = solver.eigenvalues()[column], .vector = like(like_this)});
+    Eigenpair& pair =
+        pairs.emplace_back(Eigenpair{.value = solver.eigenvalues()[column], .vector = like(like_this)});
     copy(solver.eigenvectors().col(column), pair.vector.get());
   }
   return pairs;

@@ -23,9 +23,10 @@ void require_memory(double numbers, double available, const char* what, const ch
   // The factor, and what supernodes are updated in: a tenth of it on packings.
   const double wanted = 1.2 * sizeof(double) * numbers;
   if (wanted > available)
-    throw SolverError(fmt::format("{} wants a sparse factor of {:.2g} numbers, about {:.1f} GB, and {:.1f} GB of "
-                                  "memory are free; {}",
-                                  what, numbers, wanted / 1e9, available / 1e9, instead));
+    throw SolverError(
+        fmt::format("{} wants a sparse factor of {:.2g} numbers, about {:.1f} GB, and {:.1f} GB of "
+                    "memory are free; {}",
+                    what, numbers, wanted / 1e9, available / 1e9, instead));
 }
 
 }  // namespace eigengrain::timestep

@@ -118,8 +118,8 @@ double moving_mass(const assembly::Model& model) {
 
 void require_longer(double wished, double limit) {
   if (!(wished > 0) || !std::isfinite(wished))
-    throw InputError(fmt::format("--lift: {} s is no step; write a time above {:.6e} s, the limit of this scene",
-                                 wished, limit));
+    throw InputError(fmt::format(
+        "--lift: {} s is no step; write a time above {:.6e} s, the limit of this scene", wished, limit));
   if (!std::isfinite(limit))
     throw InputError("--lift: nothing resists a motion here, so every step is stable; leave it out");
   if (wished <= limit)

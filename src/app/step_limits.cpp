@@ -52,10 +52,10 @@ std::string contact_text(const assembly::Model& model, const timestep::CarryingC
 }
 
 ordered_json to_json(const timestep::CarryingContact& contact, const assembly::Model& model) {
-  ordered_json second = contact.b == contact::no_body
-                            ? ordered_json{{"wall", assembly::wall_names(
-                                                        model)[static_cast<std::size_t>(contact.wall)]}}
-                            : body(model, contact.b);
+  ordered_json second =
+      contact.b == contact::no_body
+          ? ordered_json{{"wall", assembly::wall_names(model)[static_cast<std::size_t>(contact.wall)]}}
+          : body(model, contact.b);
   return {{"between", {body(model, contact.a), std::move(second)}},
           {"kn", contact.stiffness.normal},
           {"ks", contact.stiffness.shear},
@@ -73,12 +73,9 @@ ordered_json to_json(const LimitingMode& mode, const assembly::Model& model) {
   }
   ordered_json contacts = ordered_json::array();
   for (const timestep::CarryingContact& carrier : mode.contacts) contacts.push_back(to_json(carrier, model));
-  return {{"lambda", mode.lambda},
-          {"dt", mode.dt},
-          {"residual", mode.residual},
-          {"participation", mode.participation},
-          {"translation", mode.translation},
-          {"bodies", std::move(bodies)},
+  return {{"lambda", mode.lambda},           {"dt", mode.dt},
+          {"residual", mode.residual},       {"participation", mode.participation},
+          {"translation", mode.translation}, {"bodies", std::move(bodies)},
           {"contacts", std::move(contacts)}};
 }
 
@@ -132,11 +129,12 @@ void print(const LimitingModes& limits, const assembly::Model& model) {
     fmt::print("{:<52}  {}\n", "",
                list(mode.contacts, [&](const auto& carrier) { return contact_text(model, carrier); }));
   }
-  fmt::print("with twice the mass of {} the true step is {:.6e} s, {:.4f} of what it is;\n"
-             "with half the stiffness of {} {:.6e} s, {:.4f}\n",
-             counted(limits.carrying_bodies, "carrying body", "carrying bodies"), limits.dt_heavier,
-             limits.dt_heavier / first, counted(limits.carrying_contacts, "contact", "contacts"),
-             limits.dt_softer, limits.dt_softer / first);
+  fmt::print(
+      "with twice the mass of {} the true step is {:.6e} s, {:.4f} of what it is;\n"
+      "with half the stiffness of {} {:.6e} s, {:.4f}\n",
+      counted(limits.carrying_bodies, "carrying body", "carrying bodies"), limits.dt_heavier,
+      limits.dt_heavier / first, counted(limits.carrying_contacts, "contact", "contacts"), limits.dt_softer,
+      limits.dt_softer / first);
 }
 
 ordered_json to_json(const SelectiveLift& lift, const assembly::Model& model) {
@@ -172,21 +170,24 @@ ordered_json to_json(const SelectiveLift& lift, const assembly::Model& model) {
 
 void print(const SelectiveLift& lift) {
   const auto percent = [&](double added) { return fmt::format("{:.3g}%", 100 * added / lift.mass); };
-  fmt::print("\nFor a step of {:.6e} s ({:.3f} of the limit) {} become heavier, by {:.3g} times at most: {} of mass "
-             "is added.\nThe true limit is then {:.6e} s; proven by {}.\n",
-             lift.wished, lift.wished / lift.limit_before,
-             counted(lift.lift.heavier, "body has to", "bodies have to"), lift.lift.largest,
-             percent(lift.lift.added), lift.after.limit,
-             proof_of(lift) == "cholesky" ? "a factorisation" : "weights of the bodies");
-  fmt::print("otherwise: {} with weights of the bodies as the only proof; {} each body by its own block "
-             "(differential); {} all alike (uniform)\n",
-             percent(lift.added_by_weights), percent(lift.added_differential), percent(lift.added_uniform));
+  fmt::print(
+      "\nFor a step of {:.6e} s ({:.3f} of the limit) {} become heavier, by {:.3g} times at most: {} of mass "
+      "is added.\nThe true limit is then {:.6e} s; proven by {}.\n",
+      lift.wished, lift.wished / lift.limit_before,
+      counted(lift.lift.heavier, "body has to", "bodies have to"), lift.lift.largest,
+      percent(lift.lift.added), lift.after.limit,
+      proof_of(lift) == "cholesky" ? "a factorisation" : "weights of the bodies");
+  fmt::print(
+      "otherwise: {} with weights of the bodies as the only proof; {} each body by its own block "
+      "(differential); {} all alike (uniform)\n",
+      percent(lift.added_by_weights), percent(lift.added_differential), percent(lift.added_uniform));
   if (!lift.low_left_out.empty()) {
     fmt::print("the slowest modes are not computed: {}\n", lift.low_left_out);
     return;
   }
   std::string text;
-  for (const double change : changes(lift)) text += fmt::format("{}{:.2g}%", text.empty() ? "" : ", ", 100 * change);
+  for (const double change : changes(lift))
+    text += fmt::format("{}{:.2g}%", text.empty() ? "" : ", ", 100 * change);
   if (!text.empty()) fmt::print("the frequencies of the slowest modes change by {}\n", text);
 }
 

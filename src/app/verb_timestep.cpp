@@ -236,7 +236,8 @@ void timestep(const Options& options) {
   if (state.settings.mass_scaling && state.next_dt == 0) cycle::scale_masses(state);
   if (options.lift && state.settings.mass_scaling)
     throw InputError(
-        "--lift: beside mass_scaling, which chooses masses itself; add --set mass_scaling.form=none, or leave "
+        "--lift: beside mass_scaling, which chooses masses itself; add --set mass_scaling.form=none, or "
+        "leave "
         "--lift out");
   petsc::start();  // before the clocks of the comparison
   timestep::TruthOptions truth;

@@ -170,10 +170,10 @@ void add_notes(SceneDraft& draft) {
                     "end means anything, and times and velocities count in these seconds",
                     model::name_of(scene.mass_scaling->form), scene.mass_scaling->dt));
   else if (scene.mass_scaling)
-    scene.notes.push_back(
-        fmt::format("some bodies are made heavier where a step of {:g} s needs it: they move as if they were, but "
-                    "for their weight",
-                    scene.mass_scaling->dt));
+    scene.notes.push_back(fmt::format(
+        "some bodies are made heavier where a step of {:g} s needs it: they move as if they were, but "
+        "for their weight",
+        scene.mass_scaling->dt));
 }
 
 void check_scene(const Section& root, const SceneDraft& draft) {

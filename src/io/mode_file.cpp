@@ -49,7 +49,8 @@ void write_modes(const std::filesystem::path& file, const model::Bodies& bodies,
   const auto column = [&](const std::string& name, const auto& values) {
     return arrays.add(name, count, [&rows, from = &values] { return vtk::gathered(*from, rows); });
   };
-  std::string xml = fmt::format("{0}<Piece NumberOfPoints=\"{1}\" NumberOfCells=\"{1}\">\n", vtk::frame_head, count);
+  std::string xml =
+      fmt::format("{0}<Piece NumberOfPoints=\"{1}\" NumberOfCells=\"{1}\">\n", vtk::frame_head, count);
   xml += "<PointData Scalars=\"radius\">\n" + column("radius", bodies.radius);
   xml += column("identity", bodies.identity);
   for (std::size_t k = 0; k < motions.size(); ++k) {

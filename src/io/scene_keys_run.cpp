@@ -106,9 +106,9 @@ std::vector<KeyDescription> run_keys() {
       {.path = "mass_scaling",
        .kind = section,
        .example = "{form: differential, dt: 1 s}",
-       .description =
-           "inertial masses (not weights) chosen so that `dt` is stable; but for `selective`, only the steady "
-           "state at the end means anything"},
+       .description = "inertial masses (not weights) chosen so that `dt` is stable; but for `selective`, "
+                      "only the steady "
+                      "state at the end means anything"},
       {.path = "mass_scaling.form",
        .kind = word,
        .fallback = "differential",

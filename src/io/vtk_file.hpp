@@ -105,7 +105,8 @@ inline constexpr std::string_view frame_head =
     "<UnstructuredGrid>\n";
 
 /// xml: from frame_head to the last of the cells' arrays.
-inline void write_frame(const std::filesystem::path& file, const std::string& xml, const AppendedArrays& arrays) {
+inline void write_frame(const std::filesystem::path& file, const std::string& xml,
+                        const AppendedArrays& arrays) {
   AtomicFile output(file);
   output.write(xml);
   output.write("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");

@@ -6,10 +6,9 @@
 #include "eigengrain/timestep/comparison.hpp"
 #include "eigengrain/timestep/truth.hpp"
 
-#include "timestep/memory.hpp"
-
 #include "support/clumps.hpp"
 #include "support/lattices.hpp"
+#include "timestep/memory.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

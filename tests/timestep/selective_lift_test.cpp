@@ -11,8 +11,8 @@
 #include "eigengrain/timestep/low_modes.hpp"
 
 #include "support/clumps.hpp"
-#include "support/laws.hpp"
 #include "support/lattices.hpp"
+#include "support/laws.hpp"
 #include "support/restart.hpp"
 
 #include <gmock/gmock.h>
@@ -175,11 +175,12 @@ TEST(SelectiveLift, AddsLessMassThanTheOtherForms) {
   const double mass = sum(system.model.bodies.mass);
   for (const double part : {1.1, 1.3, 2.0}) {
     const SelectiveLift lift = lift_step(system.model, part * truth);
-    std::printf("%.1f times the truth: %.3f%% on %d of %zu bodies; by weights %.3f%%, differential %.3f%%, "
-                "uniform %.1f%%\n",
-                part, 100 * lift.lift.added / mass, lift.lift.heavier, lift.lift.factor.size(),
-                100 * lift.added_by_weights / mass, 100 * lift.added_differential / mass,
-                100 * lift.added_uniform / mass);
+    std::printf(
+        "%.1f times the truth: %.3f%% on %d of %zu bodies; by weights %.3f%%, differential %.3f%%, "
+        "uniform %.1f%%\n",
+        part, 100 * lift.lift.added / mass, lift.lift.heavier, lift.lift.factor.size(),
+        100 * lift.added_by_weights / mass, 100 * lift.added_differential / mass,
+        100 * lift.added_uniform / mass);
     EXPECT_TRUE(lift.by_eigenvalue);
     EXPECT_NEAR(lift.mass, mass, 1e-12 * mass);
     EXPECT_LT(lift.lift.added, lift.added_by_weights);
@@ -197,17 +198,20 @@ TEST(SelectiveLift, AddsLessMassThanTheOtherForms) {
   }
 }
 
-// The slowest modes of a packing with its rattlers, in which some hundred motions are not resisted.
+// The slowest modes of a cluster that grew as a tree and of a periodic packing: rigid motions and spins that
+// nothing resists come before them.
 TEST(LowModes, AreTheLeastOfTheDenseSpectrumThatAreNotZero) {
   std::mt19937_64 random(8);
   for (const bool cluster : {true, false}) {
-    const System system = cluster ? System(random_cluster(random, 120, {.kn = 1, .ks = 0.5}, 2)) : dense_packing();
+    const System system =
+        cluster ? System(random_cluster(random, 120, {.kn = 1, .ks = 0.5}, 2)) : dense_packing();
     ASSERT_GT(system.unknowns.free_components().size(), 300U);  // iterated
     const Eigen::VectorXd spectrum = system.spectrum();
     const double largest = spectrum.maxCoeff();
     const timestep::LowModes low = timestep::low_modes(system, 6, largest);
     ASSERT_EQ(low.lambda.size(), 6U);
-    const auto first = std::find_if(spectrum.begin(), spectrum.end(), [&](double x) { return x > low.floor; });
+    const auto first =
+        std::find_if(spectrum.begin(), spectrum.end(), [&](double x) { return x > low.floor; });
     std::printf("%td motions not resisted, then %.3e of the largest\n", first - spectrum.begin(),
                 *first / largest);
     for (std::size_t k = 0; k < 6; ++k) {
@@ -223,7 +227,8 @@ TEST(SelectiveLift, TellsWhatBecomesOfTheSlowestModes) {
   const SelectiveLift lift = lift_step(system.model, 1.2 * critical_timestep(system, 0.0, unproven).dt);
   ASSERT_EQ(lift.low_before.lambda.size(), 6U);
   ASSERT_EQ(lift.low_after.lambda.size(), 6U);
-  for (std::size_t k = 0; k < 6; ++k) {  // c_max bounds what more mass can do, and it does nothing but slow down
+  for (std::size_t k = 0; k < 6;
+       ++k) {  // c_max bounds what more mass can do, and it does nothing but slow down
     EXPECT_LE(lift.low_after.lambda[k], lift.low_before.lambda[k] * (1 + 1e-9));
     EXPECT_GE(lift.low_after.lambda[k], lift.low_before.lambda[k] / lift.lift.largest);
   }
@@ -260,13 +265,15 @@ assembly::State scaled(SceneBuilder builder, double dt) {
 
 double limit_of(const assembly::State& state, assembly::Listed which) {
   const assembly::LinearSystem system(state.model, which);
-  return critical_timestep(system, assembly::damping_of_unknowns(state.model, system.unknowns), unproven).limit;
+  return critical_timestep(system, assembly::damping_of_unknowns(state.model, system.unknowns), unproven)
+      .limit;
 }
 
 TEST(SelectiveMassScaling, MakesTheStepStable) {
   std::mt19937_64 random(5);
   for (int scene = 0; scene < 60; ++scene) {
-    SceneBuilder builder = random_cluster(random, 3 + scene % 20, {.kn = 1, .ks = scene % 3 == 0 ? 0 : 0.5}, 4, 0.1);
+    SceneBuilder builder =
+        random_cluster(random, 3 + scene % 20, {.kn = 1, .ks = scene % 3 == 0 ? 0 : 0.5}, 4, 0.1);
     if (scene % 2 == 0) add_dashpots(builder, 0.5, 0.2, 0.1);
     builder.damped(scene % 2 == 0 ? 0.7 : 0);
     const double dt = 1.5;
@@ -324,8 +331,8 @@ TEST(SelectiveMassScaling, ARestartGoesOnToTheBit) {
 // Its time is the true one: what moves goes on moving when it is switched off, unlike with the other forms.
 TEST(SelectiveMassScaling, IsSwitchedOffInAState) {
   const io::TemporaryFolder folder;
-  const model::Scene scene = io::read_scene_text(
-      heap(selective, "law: linear, kn: 1e4, ks: 5e3, friction: 0.4"), ".", "heap.yaml");
+  const model::Scene scene =
+      io::read_scene_text(heap(selective, "law: linear, kn: 1e4, ks: 5e3, friction: 0.4"), ".", "heap.yaml");
   cycle::Cycle cycle(cycle::start(scene), cycle::policy_of(scene));
   cycle.run(50);
   io::write_state(cycle.state(), folder.path() / "state.h5");

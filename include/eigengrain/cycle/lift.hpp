@@ -26,10 +26,10 @@ struct LiftOptions {
 ///
 ///   c_i = max(1, λ_max(M_i'^-½ [Σ_c (1 + d_j/d_i) (K + μC)_c,ii] M_i'^-½) / μ²),   M_i' = M_i/(1 + α_i)
 ///
-/// proves it. The added mass is a convex function of log d, whose minimum balances what raising d_i takes from
-/// body i and gives to its neighbours. It is approached by sweeps of Osborne's balancing (J. ACM 7:338, 1960),
-/// the contact forms taken along the eigenvectors of the blocks, with the kink at c = 1 rounded off less and
-/// less; the best of all sweeps counts. Nothing is lifted where the step is proven as it is.
+/// proves it. The added mass is a convex function of log d, whose minimum balances what raising d_i takes
+/// from body i and gives to its neighbours. It is approached by sweeps of Osborne's balancing (J. ACM 7:338,
+/// 1960), the contact forms taken along the eigenvectors of the blocks, with the kink at c = 1 rounded off
+/// less and less; the best of all sweeps counts. Nothing is lifted where the step is proven as it is.
 ///
 /// Cost: one 6×6 eigenpair for each body near its limit, and sweep. The same to the bit on any number of
 /// threads.

@@ -55,8 +55,8 @@ struct LimitingModes {
 };
 
 /// The `count` largest eigenpairs of K x = λ M x of the model as it stands (undamped), by Krylov-Schur
-/// iteration on the matrix-free product, or as a dense matrix where it is small. Throws SolverError where they
-/// do not converge.
+/// iteration on the matrix-free product, or as a dense matrix where it is small. Throws SolverError where
+/// they do not converge.
 LimitingModes limiting_modes(const assembly::Model& model, int count, const TruthOptions& options = {});
 
 }  // namespace eigengrain::timestep

@@ -21,8 +21,8 @@ struct SelectiveLift {
   cycle::Lift lift;
   /// Whether the lift is one whose true limit is what is wished; else it is what the weights alone prove.
   bool by_eigenvalue = false;
-  Truth after;              ///< of the lifted system
-  double mass = 0;          ///< of all bodies that can move, kg
+  Truth after;      ///< of the lifted system
+  double mass = 0;  ///< of all bodies that can move, kg
   /// What the same step costs otherwise, kg: with the weights of the bodies as the only proof; each body by
   /// its own block (`differential`); all by one factor, by the true limit (`uniform`).
   double added_by_weights = 0, added_differential = 0, added_uniform = 0;
@@ -33,10 +33,10 @@ struct SelectiveLift {
 };
 
 /// The least mass, on the fewest bodies, that weights of the bodies find (cycle/lift.hpp), for a step of the
-/// cycle that is the true limit of the lifted system: what the bound proves less than is true is not paid for.
-/// Steps below the wished one are lifted to, until the true limit is the wished one, from above, to 1e-3; the
-/// last is proven as `options` say (by factorisation where that is affordable or asked for, otherwise it is
-/// what the weights alone prove that is handed back). Of the contacts that act now.
+/// cycle that is the true limit of the lifted system: what the bound proves less than is true is not paid
+/// for. Steps below the wished one are lifted to, until the true limit is the wished one, from above, to
+/// 1e-3; the last is proven as `options` say (by factorisation where that is affordable or asked for,
+/// otherwise it is what the weights alone prove that is handed back). Of the contacts that act now.
 ///
 /// Throws InputError where the step is not finite and positive, or not longer than what is true without.
 SelectiveLift lift_step(const assembly::Model& model, double wished, const TruthOptions& options = {});
