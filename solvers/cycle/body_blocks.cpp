@@ -198,6 +198,19 @@ BodyBlocks::Parts BodyBlocks::parts(std::int32_t body, std::span<const double> w
   return {scaled(body, own.block()), scaled(body, others.block())};
 }
 
+double BodyBlocks::energy(std::int32_t body, std::int32_t end, const Vec6& x, double mu) const {
+  const ContactElement& element = system_.elements[static_cast<std::size_t>(end / 2)];
+  const ContactStiffness k = stiffness(end / 2, mu);
+  const Vec6 moved = scale_[body].cwiseProduct(x);
+  const Mat3* axes = system_.unknowns.axes(body);
+  const Vec3 turn = axes == nullptr ? Vec3(moved.tail<3>()) : Vec3(*axes * moved.tail<3>());
+  const Vec3 displacement = moved.head<3>() + turn.cross(lever(element, end));
+  const double along = displacement.dot(element.normal);
+  const double about = turn.dot(element.normal);
+  return k.normal * along * along + k.shear * (displacement.squaredNorm() - along * along) +
+         k.twist * about * about + k.bending * (turn.squaredNorm() - about * about);
+}
+
 double BodyBlocks::bound(std::int32_t body, std::span<const double> weight, double mu) const {
   if (simple_[body] != 0)
     return sum<RadialSum>(body, weight, mu)

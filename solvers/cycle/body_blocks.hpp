@@ -53,6 +53,8 @@ class BodyBlocks {
     Mat6 others;
   };
   Parts parts(std::int32_t body, std::span<const double> weight, double mu = 0) const;
+  /// x·(K + μC)_c,ii x of one end, x in the scaled unknowns of the block, 1/s².
+  double energy(std::int32_t body, std::int32_t end, const Vec6& x, double mu = 0) const;
   /// No eigenvalue of block() is larger. Several times cheaper than the block where levers are along normals.
   double bound(std::int32_t body, std::span<const double> weight, double mu = 0) const;
 

@@ -62,7 +62,9 @@ TimestepPolicy policy_of(const model::Scene& settings) {
       break;
   }
   return {[choice](const assembly::State& state) { return choice.safety * estimate(state); },
-          choice.every > 0 ? choice.every : varies ? steps_between_varying : steps_between_estimates};
+          choice.every > 0 ? choice.every
+          : varies         ? steps_between_varying
+                           : steps_between_estimates};
 }
 
 }  // namespace eigengrain::cycle

@@ -19,7 +19,8 @@ using assembly::StepGuard;
 
 /// Room of a body at rest over the mean radius. It costs what pairs count that are as near, and few are.
 constexpr double room_at_rest = 3e-4;
-/// A body that moves has the room for so many steps at twice its speed on top, or for as many as the list lasts.
+/// A body that moves has the room for so many steps at twice its speed on top, or for as many as the list
+/// lasts.
 constexpr double steps_of_room = 200;
 
 /// When the contacts have become others the step is proven again, or, failing that, less of it.
@@ -62,8 +63,8 @@ class Rooms {
     for (std::size_t m = 0; m < motions.size(); ++m) {
       const model::WallVelocity velocity = motions[m].at(state_.time);
       const double servo = motions[m].servo ? motions[m].servo->max_speed : 0.0;
-      speed = std::max(speed, velocity.translation.norm() +
-                                  state_.list.wall_lever[m] * velocity.spin.norm() + servo);
+      speed = std::max(
+          speed, velocity.translation.norm() + state_.list.wall_lever[m] * velocity.spin.norm() + servo);
     }
     return at_most(0.5 * state_.list.skin - state_.list.wall_way, speed);
   }

@@ -1,10 +1,10 @@
 #include "certificate.hpp"
 
-#include "eigengrain/assembly/scatter.hpp"
 #include "eigengrain/base/error.hpp"
 
-#include <Eigen/CholmodSupport>
-#include <Eigen/SparseCore>
+#include "memory.hpp"
+#include "sparse_factor.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,64 +18,8 @@ namespace {
 
 using assembly::Unknowns;
 using contact::ContactElement;
-using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_long>;
 
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
-
-/// A factor whose size is known before it is computed.
-class Factor : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
- public:
-  Factor() {
-    cholmod().print = 0;  // a matrix that is not positive definite is an answer here
-  }
-  double numbers() const { return static_cast<double>(m_cholmodFactor->xsize); }
-
-  /// The most numbers in a row. A supernode is a dense trapezoid: its columns and the rows that they share.
-  double longest_row() const {
-    const cholmod_factor& l = *m_cholmodFactor;
-    const auto* first_column = static_cast<const SuiteSparse_long*>(l.super);
-    const auto* first_row = static_cast<const SuiteSparse_long*>(l.pi);
-    const auto* rows = static_cast<const SuiteSparse_long*>(l.s);
-    std::vector<SuiteSparse_long> length(l.n, 0);
-    for (std::size_t node = 0; node < l.nsuper; ++node)
-      for (SuiteSparse_long k = first_row[node]; k < first_row[node + 1]; ++k)
-        length[static_cast<std::size_t>(rows[k])] += first_column[node + 1] - first_column[node];
-    return static_cast<double>(*std::max_element(length.begin(), length.end()));
-  }
-};
-
-/// The lower triangle of sigma - S K S.
-SparseMatrix shifted(const Unknowns& unknowns, std::span<const ContactElement> elements,
-                     std::span<const double> scale, double sigma) {
-  std::vector<Eigen::Triplet<double, SuiteSparse_long>> entries;
-  entries.reserve(elements.size() * 78 + scale.size());
-  for (std::size_t k = 0; k < scale.size(); ++k) entries.emplace_back(k, k, sigma);
-  for (const ContactElement& element : elements)
-    assembly::scatter(element, unknowns, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
-      if (row < column) return;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          const std::int64_t r = std::int64_t{3} * row + i;
-          const std::int64_t c = std::int64_t{3} * column + j;
-          if (r >= c)
-            entries.emplace_back(
-                r, c, -scale[static_cast<std::size_t>(r)] * block(i, j) * scale[static_cast<std::size_t>(c)]);
-        }
-    });
-  SparseMatrix matrix(unknowns.size(), unknowns.size());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-/// Bytes that the machine can give without swapping; infinite where it does not say.
-double available_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string key;
-  double kilobytes = 0;
-  for (std::string rest; file >> key >> kilobytes; std::getline(file, rest))
-    if (key == "MemAvailable:") return 1024 * kilobytes;
-  return std::numeric_limits<double>::infinity();
-}
 
 /// Contacts of the body that has most of them.
 double most_contacts(const Unknowns& unknowns, std::span<const ContactElement> elements) {
@@ -97,23 +41,13 @@ double lost_in_entries(double contacts, double largest_diagonal) {
 
 }  // namespace
 
-void require_memory(double numbers, double available) {
-  // The factor, and what supernodes are updated in: a tenth of it on packings.
-  const double wanted = 1.2 * sizeof(double) * numbers;
-  if (wanted > available)
-    throw SolverError(
-        fmt::format("the proof wants a sparse factor of {:.2g} numbers, about {:.1f} GB, and {:.1f} GB of "
-                    "memory are free; do without it (no --certify), or prove the scene on a larger machine",
-                    numbers, wanted / 1e9, available / 1e9));
-}
-
 std::optional<double> prove_below(const Unknowns& unknowns, std::span<const ContactElement> elements,
                                   std::span<const double> scale, double sigma) {
-  const SparseMatrix matrix = shifted(unknowns, elements, scale, sigma);
+  const SparseMatrix matrix = shifted_stiffness(unknowns, elements, scale, sigma, -1);
   const Eigen::VectorXd diagonal = matrix.diagonal();
   // A diagonal entry that is not positive is an eigenvalue above sigma.
   if (!(diagonal.minCoeff() > 0)) return std::nullopt;
-  Factor factor;
+  SparseFactor factor;
   factor.analyzePattern(matrix);
   if (factor.info() != Eigen::Success || factor.cholmod().status != CHOLMOD_OK)
     throw SolverError(fmt::format(

@@ -25,7 +25,4 @@ std::optional<double> prove_below(const assembly::Unknowns& unknowns,
                                   std::span<const contact::ContactElement> elements,
                                   std::span<const double> scale, double sigma);
 
-/// Throws SolverError where a factor of so many numbers does not fit into so many bytes.
-void require_memory(double numbers, double available);
-
 }  // namespace eigengrain::timestep

@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace eigengrain::timestep {
@@ -25,6 +27,9 @@ constexpr PetscInt toar_vectors = 24;
 
 /// With a residual r, λ errs by some r² of itself: far below what an estimate is judged by.
 constexpr double largest_residual = 1e-8;
+
+/// Eigenvalues below this part of the largest one are zeros.
+constexpr double zero_part = 1e-10;
 
 PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
   ProductShell* shell = nullptr;
@@ -58,14 +63,15 @@ petsc::Vector like(Vec x) {
   return vector;
 }
 
-petsc::Eigensolver symmetric_solver(Mat matrix, Vec start, const TruthOptions& options) {
+petsc::Eigensolver symmetric_solver(Mat matrix, Vec start, int count, const TruthOptions& options) {
+  const PetscInt vectors = std::max<PetscInt>(krylov_vectors, 2 * count + 8);
   petsc::Eigensolver solver;
   EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
   EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), matrix, nullptr));
   EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
   EIGENGRAIN_PETSC(EPSSetConvergenceTest(solver.get(), EPS_CONV_REL));
-  EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), 1, krylov_vectors, PETSC_DEFAULT));
-  const auto restarts = static_cast<PetscInt>(2 * options.max_products / krylov_vectors) + 1;
+  EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), count, vectors, PETSC_DEFAULT));
+  const auto restarts = static_cast<PetscInt>(2 * options.max_products / vectors) + 1;
   EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), options.tolerance, restarts));
   EIGENGRAIN_PETSC(EPSSetInitialSpace(solver.get(), 1, &start));
   EIGENGRAIN_PETSC(EPSSetFromOptions(solver.get()));
@@ -145,20 +151,40 @@ void copy(const Eigen::VectorXd& from, Vec to) {
   EIGENGRAIN_PETSC(VecRestoreArrayWrite(to, &values));
 }
 
-/// The largest eigenvalue; x, where it starts, becomes its eigenvector.
-double iterate(Mat matrix, Vec x, const TruthOptions& options) {
-  const petsc::Eigensolver solver = symmetric_solver(matrix, x, options);
+/// The largest eigenpairs; x is where it starts.
+std::vector<Eigenpair> iterate(Mat matrix, Vec x, int count, const TruthOptions& options) {
+  const petsc::Eigensolver solver = symmetric_solver(matrix, x, count, options);
   EIGENGRAIN_PETSC(EPSSolve(solver.get()));
   PetscInt converged = 0;
   EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
-  if (converged < 1)
+  if (converged < count)
     throw SolverError(
-        fmt::format("the largest eigenvalue did not converge to a residual of {} in {} products with K; "
+        fmt::format("{} did not converge to a residual of {} in {} products with K; "
                     "ask for less, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
+                    count == 1 ? std::string("the largest eigenvalue")
+                               : fmt::format("{} of the {} largest eigenvalues", count - converged, count),
                     options.tolerance, options.max_products));
-  PetscScalar value = 0;
-  EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &value, nullptr, x, nullptr));
-  return value;
+  std::vector<Eigenpair> pairs;
+  for (PetscInt k = 0; k < count; ++k) {
+    PetscScalar value = 0;
+    Eigenpair& pair = pairs.emplace_back(Eigenpair{.vector = like(x)});
+    EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), k, &value, nullptr, pair.vector.get(), nullptr));
+    pair.value = value;
+  }
+  return pairs;
+}
+
+/// The same of a small product, as a dense matrix.
+std::vector<Eigenpair> solve_dense(StiffnessProduct& product, Vec like_this, int count) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(product));
+  std::vector<Eigenpair> pairs;
+  for (int k = 1; k <= count; ++k) {
+    const Eigen::Index column = solver.eigenvalues().size() - k;
+    Eigenpair& pair =
+        pairs.emplace_back(Eigenpair{.value = solver.eigenvalues()[column], .vector = like(like_this)});
+    copy(solver.eigenvectors().col(column), pair.vector.get());
+  }
+  return pairs;
 }
 
 /// x becomes the eigenvector of the largest μ of (μ² + μ c + k) x = 0.
@@ -225,26 +251,46 @@ double dot(Vec x, Vec y) {
   return value;
 }
 
+std::vector<double> mode_of(Vec y, std::span<const double> scale) {
+  const PetscScalar* values = nullptr;
+  EIGENGRAIN_PETSC(VecGetArrayRead(y, &values));
+  std::vector<double> mode(scale.begin(), scale.end());
+  const double length = std::sqrt(dot(y, y));
+  for (std::size_t k = 0; k < mode.size(); ++k) mode[k] *= values[k] / length;
+  EIGENGRAIN_PETSC(VecRestoreArrayRead(y, &values));
+  return mode;
+}
+
+std::vector<Eigenpair> largest_eigenpairs(StiffnessProduct& product, std::span<const double> scale, int count,
+                                          const TruthOptions& options) {
+  const auto free = std::ranges::count_if(scale, [](double s) { return s > 0; });
+  count = static_cast<int>(std::min<std::int64_t>(count, std::max<std::int64_t>(1, free)));
+  const ProductShell matrix(product);
+  const petsc::Vector start = start_vector(matrix.mat(), scale, options.seed);
+  std::vector<Eigenpair> pairs = is_dense(product.size())
+                                     ? solve_dense(product, start.get(), count)
+                                     : iterate(matrix.mat(), start.get(), count, options);
+  const double largest = pairs.front().value;
+  for (Eigenpair& pair : pairs) {
+    Vec x = pair.vector.get();
+    if (pair.value > 0) {
+      const petsc::Vector r = like(x);
+      EIGENGRAIN_PETSC(MatMult(matrix.mat(), x, r.get()));
+      EIGENGRAIN_PETSC(VecAXPY(r.get(), -pair.value, x));
+      pair.residual = norm(r.get()) / (pair.value * norm(x));
+    }
+    // Beyond the first there may be zeros, which come out as rounding of it.
+    if (&pair == pairs.data() || pair.value > zero_part * largest)
+      require_eigenpair(pair, "the largest eigenvalue", "-eps_tol");
+    else
+      pair.value = 0;
+  }
+  return pairs;
+}
+
 Eigenpair largest_eigenpair(StiffnessProduct& product, std::span<const double> scale,
                             const TruthOptions& options) {
-  const ProductShell matrix(product);
-  Eigenpair pair{.vector = start_vector(matrix.mat(), scale, options.seed)};
-  Vec x = pair.vector.get();
-  if (is_dense(product.size())) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(product));
-    pair.value = solver.eigenvalues().tail<1>().value();
-    copy(solver.eigenvectors().rightCols<1>(), x);
-  } else {
-    pair.value = iterate(matrix.mat(), x, options);
-  }
-  if (pair.value > 0) {
-    const petsc::Vector r = like(x);
-    EIGENGRAIN_PETSC(MatMult(matrix.mat(), x, r.get()));
-    EIGENGRAIN_PETSC(VecAXPY(r.get(), -pair.value, x));
-    pair.residual = norm(r.get()) / (pair.value * norm(x));
-  }
-  require_eigenpair(pair, "the largest eigenvalue", "-eps_tol");
-  return pair;
+  return std::move(largest_eigenpairs(product, scale, 1, options).front());
 }
 
 Eigenpair largest_quadratic_eigenpair(StiffnessProduct& stiffness, StiffnessProduct& viscosity,

@@ -6,6 +6,7 @@
 #include "petsc/handles.hpp"
 
 #include <span>
+#include <vector>
 
 /// The eigensolvers of SLEPc on matrix-free products. All vectors are [unknowns.size()] with zeros at masked
 /// components.
@@ -44,6 +45,14 @@ struct Eigenpair {
 /// out well.
 Eigenpair largest_eigenpair(assembly::StiffnessProduct& product, std::span<const double> scale,
                             const TruthOptions& options);
+
+/// The `count` largest ones, in decreasing order; fewer where the free components are fewer. The iteration
+/// takes them from one Krylov space.
+std::vector<Eigenpair> largest_eigenpairs(assembly::StiffnessProduct& product, std::span<const double> scale,
+                                          int count, const TruthOptions& options);
+
+/// S y / |y|: the mode that belongs to a vector of the scaled problem.
+std::vector<double> mode_of(Vec y, std::span<const double> scale);
 
 /// The largest μ with (μ² - μ C - K) x = 0, C and K symmetric positive semidefinite, by the two-level Arnoldi
 /// method for polynomial eigenproblems (TOAR; Lu, Su and Bai, SIAM J. Matrix Anal. Appl. 37:195, 2016), or

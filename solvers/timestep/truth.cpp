@@ -58,25 +58,14 @@ struct Problem {
   }
 };
 
-/// S y / |y|
-std::vector<double> mode_of(Vec y, std::span<const double> scale) {
-  const PetscScalar* values = nullptr;
-  EIGENGRAIN_PETSC(VecGetArrayRead(y, &values));
-  std::vector<double> mode(scale.begin(), scale.end());
-  const double length = std::sqrt(dot(y, y));
-  for (std::size_t k = 0; k < mode.size(); ++k) mode[k] *= values[k] / length;
-  EIGENGRAIN_PETSC(VecRestoreArrayRead(y, &values));
-  return mode;
-}
-
 Found search(const Problem& problem, const TruthOptions& options) {
   Found found;
   StiffnessProduct stiffness(problem.system.unknowns, problem.system.elements, problem.scale);
   if (problem.dashpots) {
     StiffnessProduct viscosity(problem.system.unknowns, assembly::viscous_elements(problem.system),
                                problem.scale);
-    const Eigenpair pair =
-        largest_quadratic_eigenpair(stiffness, viscosity, problem.scale, 2 / problem.prover().bound(), options);
+    const Eigenpair pair = largest_quadratic_eigenpair(stiffness, viscosity, problem.scale,
+                                                       2 / problem.prover().bound(), options);
     found.rate = pair.value * pair.value;
     found.residual = pair.residual;
     found.mode = mode_of(pair.vector.get(), problem.scale);

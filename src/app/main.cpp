@@ -151,6 +151,21 @@ int run_program(int argc, char** argv) {
                     "prove the true step by a sparse factorisation, however long that takes");
   judging->add_flag("--empirical", options.empirical,
                     "find the limit by running the cycle with one step after the other, too");
+  CLI::Option* modes =
+      judging
+          ->add_option("--modes", options.modes,
+                       "what limits the step: so many modes, the bodies and contacts that carry them, and "
+                       "the step if these were heavier or softer")
+          ->type_name("K")
+          ->check(CLI::Range(1, 100));
+  judging->add_option("--modes-to", options.modes_file, "write the shapes of these modes, for ParaView")
+      ->type_name("FILE.vtu")
+      ->needs(modes);
+  judging
+      ->add_option("--lift", options.lift,
+                   "the least mass, on the fewest bodies, that makes this step stable (s), and what it does "
+                   "to the slowest modes")
+      ->type_name("DT");
   add_compare(program, options);
 #endif
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {

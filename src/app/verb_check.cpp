@@ -148,7 +148,8 @@ void print_settings(const model::Scene& scene, const model::Bodies& bodies) {
   else if (scene.timestep.dt)
     fmt::print("  timestep    fixed, {:g} s\n", *scene.timestep.dt);
   else
-    fmt::print("  timestep    {}, safety {:g}\n", model::name_of(scene.timestep.policy), scene.timestep.safety);
+    fmt::print("  timestep    {}, safety {:g}\n", model::name_of(scene.timestep.policy),
+               scene.timestep.safety);
   if (scene.run.steps) fmt::print("  run         {}\n", counted(*scene.run.steps, "step", "steps"));
   if (scene.run.time) fmt::print("  run         until t = {:g} s\n", *scene.run.time);
   if (scene.run.unbalanced)

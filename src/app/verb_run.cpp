@@ -1,5 +1,6 @@
 #include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/bonds.hpp"
+#include "eigengrain/cycle/mass_scaling.hpp"
 
 #include "explicit_run.hpp"
 #include "interrupt.hpp"
@@ -18,6 +19,23 @@ namespace {
 
 using assembly::State;
 
+nlohmann::ordered_json masses_of(const State& state) {
+  const cycle::ScaledMasses masses = cycle::scaled_masses(state.model.bodies);
+  return {{"form", model::name_of(state.settings.mass_scaling->form)},
+          {"bodies", masses.bodies},
+          {"heavier", masses.heavier},
+          {"largest_factor", masses.largest},
+          {"mass", masses.mass},
+          {"added", masses.added},
+          {"added_part", masses.mass > 0 ? masses.added / masses.mass : 0.0}};
+}
+
+void print_masses(const nlohmann::ordered_json& masses) {
+  fmt::print("\nmasses: {} of {} bodies are heavier, by {:.3g} times at most; {:+.3g}% of mass in all",
+             grouped(masses["heavier"]), grouped(masses["bodies"]), masses["largest_factor"].get<double>(),
+             100 * masses["added_part"].get<double>());
+}
+
 nlohmann::ordered_json to_json(const CycleWork& work, const State& state, double rate) {
   nlohmann::ordered_json report{
       {"steps", work.steps},
@@ -31,6 +49,7 @@ nlohmann::ordered_json to_json(const CycleWork& work, const State& state, double
   add_balance(report, assembly::balance_of(state));
   add_energies(report, state);
   if (state.ledger) add_ledger(report, state);
+  if (state.settings.mass_scaling) report["mass_scaling"] = masses_of(state);
   const std::int64_t bonds = assembly::count_bonds(state.model);
   if (bonds > 0 || work.broken > 0) report["bonds"] = {{"intact", bonds}, {"broken", work.broken}};
   return report;
@@ -50,6 +69,7 @@ void conclude(const CycleWork& work, const State& state, const std::filesystem::
   fmt::print("{}: {} in {}, t = {:.6g} s", state.settings.name, counted(work.steps, "step", "steps"),
              duration_text(work.seconds), state.time);
   if (rate > 0) fmt::print(", {:.3g} million ball steps a second", 1e-6 * rate);
+  if (report.contains("mass_scaling")) print_masses(report["mass_scaling"]);
   if (state.settings.timestep.policy == model::TimestepPolicy::tracked && work.seconds > 0)
     fmt::print("\nstep proven anew {}, in {:.1f}% of the time", counted(work.steps_chosen, "time", "times"),
                100 * work.choosing_seconds / work.seconds);

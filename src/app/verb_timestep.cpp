@@ -1,4 +1,5 @@
 #include "eigengrain/assembly/local_damping.hpp"
+#include "eigengrain/base/error.hpp"
 #include "eigengrain/cycle/mass_scaling.hpp"
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/petsc/session.hpp"
@@ -8,6 +9,7 @@
 
 #include "comparison_json.hpp"
 #include "input.hpp"
+#include "step_limits.hpp"
 #include "text.hpp"
 #include "verbs.hpp"
 
@@ -40,7 +42,8 @@ PolicyStep policy_step(const assembly::State& state) {
   else if (choice.policy == model::TimestepPolicy::bound)
     how = fmt::format("bound: {:g} of what is proven for all near pairs", choice.safety);
   else if (choice.policy == model::TimestepPolicy::tracked)
-    how = fmt::format("tracked: {:g} of what is proven for the contacts and what is about to touch", choice.safety);
+    how = fmt::format("tracked: {:g} of what is proven for the contacts and what is about to touch",
+                      choice.safety);
   else if (choice.policy == model::TimestepPolicy::estimate)
     how = fmt::format("estimate: {:g} of diagonal", choice.safety);
   // A run that goes on has its step already.
@@ -190,11 +193,15 @@ void timestep(const Options& options) {
   if (!options.petsc.empty()) petsc::set_options(options.petsc);
   assembly::State state = read_input(options).state;
   if (state.settings.mass_scaling && state.next_dt == 0) cycle::scale_masses(state);
+  if (options.lift && state.settings.mass_scaling)
+    throw InputError(
+        "--lift: beside mass_scaling, which chooses masses itself; add --set mass_scaling.form=none, or "
+        "leave "
+        "--lift out");
   petsc::start();  // before the clocks of the comparison
   timestep::TruthOptions truth;
   if (options.certify) truth.certify = timestep::Certify::always;
   const Comparison comparison = timestep::compare(state.model, truth, state.settings.materials);
-  if (!options.petsc.empty()) petsc::require_options_used();
   const PolicyStep policy = policy_step(state);
   ordered_json report = to_json(comparison, policy);
   if (const auto& scaling = state.settings.mass_scaling)
@@ -209,10 +216,24 @@ void timestep(const Options& options) {
     empirical = timestep::empirical_limit(state, comparison.truth);
     report["empirical"] = to_json(*empirical, comparison.truth);
   }
+  std::optional<timestep::LimitingModes> limits;
+  if (options.modes > 0) {
+    limits = timestep::limiting_modes(state.model, options.modes, truth);
+    report["limits"] = to_json(*limits, state.model);
+    if (!options.modes_file.empty()) write_modes(options.modes_file, *limits, state.model);
+  }
+  std::optional<timestep::SelectiveLift> lift;
+  if (options.lift) {
+    lift = timestep::lift_step(state.model, *options.lift, truth);
+    report["lift"] = to_json(*lift, state.model);
+  }
+  if (!options.petsc.empty()) petsc::require_options_used();
   write_json(options.json, report);
   print(state, comparison, policy);
   if (tangent && comparison.unknowns > 0) print(*tangent, policy.dt);
   if (empirical) print(*empirical, comparison.truth);
+  if (limits) print(*limits, state.model);
+  if (lift) print(*lift);
 }
 
 }  // namespace eigengrain::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct Options {
   std::vector<std::int64_t> sizes;   ///< of compare timesteps: numbers of balls to measure costs at
   std::vector<double> fractions;     ///< of compare steps: of the limit; empty: the usual ones
   double time = 0;                   ///< of compare steps, s; 0: that of the scene
+  int modes = 0;                     ///< of timestep: how many of the modes that limit the step; 0: none
+  std::string modes_file;            ///< of timestep: their shapes; empty: none
+  std::optional<double> lift;        ///< of timestep: the step that masses are to make stable, s
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.

@@ -164,11 +164,16 @@ void add_notes(SceneDraft& draft) {
             fmt::format("{} and {} lie in one plane: balls there touch both, so they count twice",
                         scene.walls[first].name, scene.walls[second].name));
   for (const model::Surface& surface : scene.surfaces) note_size(surface, scene);
-  if (scene.mass_scaling)
+  if (scene.mass_scaling && !model::keeps_time(scene.mass_scaling))
     scene.notes.push_back(
         fmt::format("masses are scaled ({}) so that a step of {:g} s is stable: only the steady state at the "
                     "end means anything, and times and velocities count in these seconds",
                     model::name_of(scene.mass_scaling->form), scene.mass_scaling->dt));
+  else if (scene.mass_scaling)
+    scene.notes.push_back(fmt::format(
+        "some bodies are made heavier where a step of {:g} s needs it: they move as if they were, but "
+        "for their weight",
+        scene.mass_scaling->dt));
 }
 
 void check_scene(const Section& root, const SceneDraft& draft) {
@@ -185,6 +190,7 @@ void check_mass_scaling(const Section& root, const SceneDraft& draft) {
                 "beside a table of the ledger, which has no meaning there; remove mass_scaling, or leave "
                 "`ledger` out of `histories`");
   if (root.diagnostics().any()) return;  // a law may be incomplete
+  if (model::keeps_time(scene.mass_scaling)) return;
   for (std::size_t r = 0; r < scene.contacts.size(); ++r) {
     const model::ContactRule& rule = scene.contacts[r];
     if (rule.law == "none") continue;

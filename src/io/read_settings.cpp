@@ -127,8 +127,8 @@ void read_mass_scaling(const Section& root, SceneDraft& draft) {
   const auto dt = section->quantity("dt");
   if (!form || !dt || *form == "none") return;
   using enum model::MassScaling::Form;
-  draft.scene.mass_scaling =
-      model::MassScaling{.form = *form == "uniform" ? uniform : differential, .dt = *dt};
+  const auto chosen = *form == "uniform" ? uniform : *form == "selective" ? selective : differential;
+  draft.scene.mass_scaling = model::MassScaling{.form = chosen, .dt = *dt};
   if (draft.scene.timestep.policy == model::TimestepPolicy::fixed)
     section->report("dt", "beside a timestep of policy fixed, which has another dt; remove one of the two");
 }

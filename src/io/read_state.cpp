@@ -285,13 +285,14 @@ bool scaling_changed(const model::Scene& stored, const model::Scene& now) {
   return then && (then->form != now.mass_scaling->form || then->dt != now.mass_scaling->dt);
 }
 
-/// With other inertial masses time runs otherwise, and what moves freely has velocities that mean nothing: it
-/// starts from rest, with the true masses until the cycle chooses. What is prescribed goes on.
-void begin_other_masses(assembly::State& state) {
+/// The true masses until the cycle chooses. Where time runs otherwise with other inertial masses, what moves
+/// freely has velocities that mean nothing: it starts from rest. What is prescribed goes on.
+void begin_other_masses(const model::Scene& stored, assembly::State& state) {
   model::Bodies& bodies = state.model.bodies;
   bodies.mass_factor.clear();
-  state.dt = 0;
   state.next_dt = 0;
+  if (model::keeps_time(stored.mass_scaling) && model::keeps_time(state.settings.mass_scaling)) return;
+  state.dt = 0;
   const auto stop = [](Vec3& v, std::uint8_t fixed) { v -= model::free_part(v, fixed); };
   const assembly::Fluctuation fluctuation(state.model.cell);  // the flow of a cell goes on
   const auto stop_at = [&](Vec3& v, const Vec3& x, std::uint8_t fixed) {
@@ -345,7 +346,7 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
       surroundings_moved(stored, state.settings) || pairs_may_be_new(stored, state.settings);
   if (list_is_old) assembly::renew_list(state, state.list.skin);
   if (!list_is_old) read_guard(hdf5, stored, state);
-  if (scaling_changed(stored, state.settings)) begin_other_masses(state);
+  if (scaling_changed(stored, state.settings)) begin_other_masses(stored, state);
   // Friction that comes on lets balls turn that could not before.
   if (state.model.bodies.spin.empty() && !assembly::needs_rotation(stored) &&
       assembly::needs_rotation(state.settings)) {

@@ -93,10 +93,11 @@ std::vector<KeyDescription> run_keys() {
        .kind = text,
        .fallback = "auto",
        .example = "200",
-       .description =
-           "steps after which the policy is asked again even if nothing calls for it; `auto`: 500 with `tracked`, "
-           "100 with `estimate` (5 where stiffness follows the overlap), with `bound` only where near pairs do "
-           "not say it all"},
+       .description = "steps after which the policy is asked again even if nothing calls for it; `auto`: 500 "
+                      "with `tracked`, "
+                      "100 with `estimate` (5 where stiffness follows the overlap), with `bound` only where "
+                      "near pairs do "
+                      "not say it all"},
       {.path = "timestep.dt",
        .kind = quantity,
        .unit = "s",
@@ -107,17 +108,17 @@ std::vector<KeyDescription> run_keys() {
       {.path = "mass_scaling",
        .kind = section,
        .example = "{form: differential, dt: 1 s}",
-       .description =
-           "inertial masses (not weights) chosen so that `dt` is stable, for fewer steps to a static "
-           "solution; only the steady state at the end means anything"},
+       .description = "inertial masses (not weights) chosen so that `dt` is stable; but for `selective`, "
+                      "only the steady "
+                      "state at the end means anything"},
       {.path = "mass_scaling.form",
        .kind = word,
        .fallback = "differential",
-       .words = {"differential", "uniform", "none"},
+       .words = {"differential", "uniform", "selective", "none"},
        .example = "differential",
        .description =
-           "`differential`: of each body for itself; `uniform`: of all by one factor; `none`: the true "
-           "masses, for `--set`"},
+           "`differential`: of each body for itself; `uniform`: of all by one factor; `selective`: of as few "
+           "bodies, by as little, as `dt` needs, in true time; `none`: the true masses, for `--set`"},
       {.path = "mass_scaling.dt",
        .kind = quantity,
        .unit = "s",

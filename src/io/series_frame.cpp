@@ -1,19 +1,15 @@
 #include "series_frame.hpp"
 
 #include "eigengrain/assembly/acting.hpp"
-#include "eigengrain/base/assert.hpp"
 #include "eigengrain/measures/measure.hpp"
 
-#include "atomic_file.hpp"
+#include "vtk_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <concepts>
 #include <cstdint>
-#include <functional>
 #include <numeric>
 #include <string>
 #include <string_view>
@@ -22,81 +18,7 @@
 namespace eigengrain::io {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
-static_assert(sizeof(Vec3) == 3 * sizeof(double));
-
-template <class T>
-constexpr std::string_view type_name = "Float64";
-template <>
-constexpr std::string_view type_name<std::int64_t> = "Int64";
-template <>
-constexpr std::string_view type_name<std::int32_t> = "Int32";
-template <>
-constexpr std::string_view type_name<std::uint8_t> = "UInt8";
-
-/// A tensor row by row, as VTK has it.
-using Tensor = std::array<double, 9>;
-
-template <class T>
-constexpr std::string_view components = "";
-template <>
-constexpr std::string_view components<Vec3> = R"( NumberOfComponents="3")";
-template <>
-constexpr std::string_view components<Tensor> = R"( NumberOfComponents="9")";
-
-template <class T>
-std::string_view bytes_of(const std::vector<T>& values) {
-  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
-/// The arrays that are appended to the XML. What each holds is computed only when it is written, so that no
-/// two of them are in memory at once.
-class AppendedArrays {
- public:
-  /// Takes note of an array of `count` rows and returns its element.
-  template <std::invocable Make>
-  std::string add(std::string_view name, std::size_t count, Make make, std::string_view more = {}) {
-    using Value = typename std::invoke_result_t<Make>::value_type;
-    const std::uint64_t size = count * sizeof(Value);
-    std::string element =
-        fmt::format("<DataArray type=\"{}\" Name=\"{}\"{}{} format=\"appended\" offset=\"{}\"/>\n",
-                    type_name<Value>, name, components<Value>, more, offset_);
-    offset_ += sizeof(size) + size;
-    writers_.emplace_back([size, make](AtomicFile& file) {
-      file.write({reinterpret_cast<const char*>(&size), sizeof(size)});
-      const std::vector<Value> values = make();
-      EIGENGRAIN_ASSERT(values.size() * sizeof(Value) == size, values.size(), size);
-      file.write(bytes_of(values));
-    });
-    return element;
-  }
-
-  void write(AtomicFile& file) const {
-    for (const auto& writer : writers_) writer(file);
-  }
-
- private:
-  std::vector<std::function<void(AtomicFile&)>> writers_;
-  std::uint64_t offset_ = 0;
-};
-
-/// Rows of the bodies in the order of identity.
-std::vector<std::int32_t> rows_by_identity(const model::Bodies& bodies) {
-  std::vector<std::int32_t> rows(bodies.identity.size());
-  std::iota(rows.begin(), rows.end(), 0);
-  std::sort(rows.begin(), rows.end(),
-            [&](std::int32_t a, std::int32_t b) { return bodies.identity[a] < bodies.identity[b]; });
-  return rows;
-}
-
-template <class T>
-std::vector<T> gathered(const std::vector<T>& column, const std::vector<std::int32_t>& rows) {
-  EIGENGRAIN_ASSERT(column.size() == rows.size(), column.size(), rows.size());
-  std::vector<T> result;
-  result.reserve(rows.size());
-  for (const std::int32_t row : rows) result.push_back(column[static_cast<std::size_t>(row)]);
-  return result;
-}
+using namespace vtk;
 
 /// How many contacts act on each body; one with the body's own image counts at both of its ends.
 std::vector<std::int32_t> acting_contacts(const assembly::Model& model) {
@@ -121,21 +43,6 @@ std::vector<std::int64_t> clumps_of(const model::Clumps& clumps, const std::vect
   return result;
 }
 
-constexpr std::string_view frame_head =
-    "<?xml version=\"1.0\"?>\n"
-    "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-    "<UnstructuredGrid>\n";
-
-/// xml: from frame_head to the last of the cells' arrays.
-void write_frame(const std::filesystem::path& file, const std::string& xml, const AppendedArrays& arrays) {
-  AtomicFile output(file);
-  output.write(xml);
-  output.write("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
-  arrays.write(output);
-  output.write("\n</AppendedData>\n</VTKFile>\n");
-  output.commit();
-}
-
 Tensor rows_of(const Mat3& matrix) {
   Tensor rows;
   for (int row = 0; row < 3; ++row)
@@ -148,21 +55,6 @@ std::vector<Tensor> stresses(const assembly::Model& model) {
   std::vector<Tensor> result;
   for (const Mat3& stress : measures::body_stresses(model)) result.push_back(rows_of(stress));
   return result;
-}
-
-template <class T>
-std::vector<T> numbered_from(T first, std::size_t count) {
-  std::vector<T> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), first);
-  return numbers;
-}
-
-/// A cell for each of so many points: ParaView draws no points that belong to none.
-std::string vertices(std::size_t count, AppendedArrays& arrays) {
-  constexpr std::uint8_t vtk_vertex = 1;
-  return arrays.add("connectivity", count, [=] { return numbered_from<std::int64_t>(0, count); }) +
-         arrays.add("offsets", count, [=] { return numbered_from<std::int64_t>(1, count); }) +
-         arrays.add("types", count, [=] { return std::vector<std::uint8_t>(count, vtk_vertex); });
 }
 
 }  // namespace
@@ -203,7 +95,7 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
   xml += "</PointData>\n<Points>\n";
   xml += column("Points", bodies.position);
   xml += "</Points>\n<Cells>\n" + vertices(count, arrays);
-  write_frame(file, xml, arrays);
+  vtk::write_frame(file, xml, arrays);
 }
 
 void write_surface_frame(const std::filesystem::path& file, const assembly::Model& model) {
@@ -236,7 +128,7 @@ void write_surface_frame(const std::filesystem::path& file, const assembly::Mode
     return ends;
   });
   xml += arrays.add("types", cells, [=] { return std::vector<std::uint8_t>(cells, vtk_triangle); });
-  write_frame(file, xml, arrays);
+  vtk::write_frame(file, xml, arrays);
 }
 
 void write_break_frame(const std::filesystem::path& file, std::span<const assembly::BondBreak> breaks) {
@@ -260,7 +152,7 @@ void write_break_frame(const std::filesystem::path& file, std::span<const assemb
   xml += column("normal", [](const auto& found) { return found.normal; });
   xml += "</PointData>\n<Points>\n" + column("Points", [](const auto& found) { return found.place; });
   xml += "</Points>\n<Cells>\n" + vertices(count, arrays);
-  write_frame(file, xml, arrays);
+  vtk::write_frame(file, xml, arrays);
 }
 
 }  // namespace eigengrain::io

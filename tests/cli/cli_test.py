@@ -177,6 +177,57 @@ balls: [{lattice: sc, radius: 5 mm, box: {min: [0, 0, 0], max: [0.03, 0.03, 0.03
         self.assertAlmostEqual(report["policy"]["ratio_to_limit"], 0.8, delta=1e-10)
 
     @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_timestep_tells_what_limits_the_step_and_what_would_lift_it(self):
+        shapes = self.folder / "modes.vtu"
+        limit = 2 * math.sqrt(4 / 3 * math.pi * 5e-3 ** 3 * 2500 / 2e5 / 1.7)
+        text, report = self.succeed("timestep", self.scene(PAIR), "--modes", "3", "--modes-to", shapes, "--lift", 1.2 * limit)
+        mode, = report["limits"]["modes"]  # one spring
+        self.assertEqual(sorted(body["ball"] for body in mode["bodies"]), [0, 1])
+        self.assertAlmostEqual(mode["participation"], 2, delta=1e-12)
+        self.assertEqual(mode["contacts"][0]["kn"], 1e5)
+        self.assertAlmostEqual(report["limits"]["heavier"]["dt"] / mode["dt"], math.sqrt(2), delta=1e-12)
+        self.assertIn("with twice the mass of 2 carrying bodies", text)
+        head = shapes.read_bytes()
+        for name in (b"mode_1_displacement", b"mode_1_rotation", b"mode_1_energy"):
+            self.assertIn(name, head)
+        lift = report["lift"]
+        self.assertEqual([body["ball"] for body in lift["bodies"]], [0, 1])
+        # All alike here, so that every form has (1.2² - 1) of the mass to add.
+        for body in lift["bodies"]:
+            self.assertAlmostEqual(body["factor"], 1.44, delta=1e-9)
+        for kind in ("added", "added_by_weights", "added_differential", "added_uniform"):
+            self.assertAlmostEqual(lift[kind] / lift["mass"], 0.44, delta=1e-9)
+        self.assertEqual(lift["proof"], "bound")
+        self.assertAlmostEqual(lift["slow_modes"][0]["frequency_change"], 1 / 1.2 - 1, delta=1e-9)
+        self.assertIn("2 bodies have to become heavier, by 1.44 times at most: 44% of mass is added", text)
+        _, report = self.succeed("timestep", self.scene(PAIR))
+        self.assertFalse({"limits", "lift"} & set(report))
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
+    def test_timestep_refuses_steps_that_need_no_mass(self):
+        for step, message in (("1e-9", "is within the true limit of this scene as it is"), ("-1", "-1 s is no step"),
+                              ("inf", "inf s is no step")):
+            done = self.run_program("timestep", self.scene(PAIR), f"--lift={step}")
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(message, done.stderr)
+        done = self.run_program("timestep", self.scene(PAIR), "--lift=1", "--set", "mass_scaling={dt: 2 s}")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("--lift: beside mass_scaling", done.stderr)
+        self.assertEqual(self.run_program("timestep", self.scene(PAIR), "--modes", "0").returncode, 2)
+        self.assertEqual(self.run_program("timestep", self.scene(PAIR), "--modes-to", "a.vtu").returncode, 2)
+
+    def test_a_run_says_which_masses_it_has_scaled(self):
+        limit = 2 * math.sqrt(4 / 3 * math.pi * 5e-3 ** 3 * 2500 / 2e5 / 1.7)
+        text, report = self.succeed("run", self.scene(PAIR + "run: {steps: 3}\n"), "--output", self.folder, "--set",
+                                    f"mass_scaling={{form: selective, dt: {1.2 * limit}}}", "--set", "timestep.safety=1")
+        masses = report["mass_scaling"]
+        self.assertEqual((masses["form"], masses["bodies"], masses["heavier"]), ("selective", 2, 2))
+        self.assertAlmostEqual(masses["added_part"], 0.44, delta=1e-9)
+        self.assertAlmostEqual(report["dt"] / limit, 1.2, delta=1e-12)
+        self.assertIn("masses: 2 of 2 bodies are heavier, by 1.44 times at most; +44% of mass in all", text)
+        self.assertIn("note: some bodies are made heavier where a step of", text)
+
+    @unittest.skipUnless(HAS_TIMESTEP, "built without PETSc")
     def test_no_contact_means_no_limit(self):
         text, report = self.succeed("timestep", self.scene(PAIR), "--set", "balls.1.position=[1, 1, 1]")
         self.assertIn("no timestep is critical", text)

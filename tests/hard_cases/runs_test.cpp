@@ -40,7 +40,8 @@ struct Run {
 const std::vector<Run>& runs() {
   const double works = std::numeric_limits<double>::infinity();  // as a wall does
   const std::string ten = "ten_contacts_at_once";
-  // Contacts that open and close without damping gain energy near the limit, whatever proves it (docs/theory.md).
+  // Contacts that open and close without damping gain energy near the limit, whatever proves it
+  // (docs/theory.md).
   const std::string undamped = "timestep.safety=0.8";
   // With more the fragments fly by a tenth of their radius in a step, which the watch does not let pass.
   const std::string violent = "timestep.safety=0.6";

@@ -8,6 +8,7 @@
 
 #include "support/clumps.hpp"
 #include "support/lattices.hpp"
+#include "timestep/memory.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -78,18 +78,23 @@ struct TimestepChoice {
   std::int64_t every = 0;    ///< steps between looks at it; 0: as the policy thinks best
 };
 
-/// Inertial masses that are not the true ones, so that a static solution takes fewer steps (PFC3D 1.7). Only
-/// the steady state at the end means anything.
+/// Inertial masses that are not the true ones, so that steps may be longer (PFC3D 1.7).
 struct MassScaling {
   enum class Form {
     differential,  ///< of each body for itself
-    uniform        ///< of all by one factor
+    uniform,       ///< of all by one factor
+    selective      ///< of as few bodies, by as little, as the step needs; time stays what it is
   };
   Form form = Form::differential;
   double dt = 1;  ///< the step that the masses make stable, with TimestepChoice::safety, s
 };
 constexpr const char* name_of(MassScaling::Form form) {
+  if (form == MassScaling::Form::selective) return "selective";
   return form == MassScaling::Form::uniform ? "uniform" : "differential";
+}
+/// Whether times and velocities mean what they say. Else only the steady state at the end means anything.
+constexpr bool keeps_time(const std::optional<MassScaling>& scaling) {
+  return !scaling || scaling->form == MassScaling::Form::selective;
 }
 
 /// A table that a run writes, a line every so many steps.

@@ -48,8 +48,9 @@ ordered_json json_of(const RunLengths& lengths) {
   ordered_json result{
       {"name", lengths.name}, {"median", json_number(lengths.median())}, {"scenes", ordered_json::array()}};
   for (const RunLength& length : lengths.lengths)
-    result["scenes"].push_back(
-        {{"name", length.scene}, {"relative_steps", json_number(length.relative_steps)}, {"safe", length.safe}});
+    result["scenes"].push_back({{"name", length.scene},
+                                {"relative_steps", json_number(length.relative_steps)},
+                                {"safe", length.safe}});
   return result;
 }
 
