@@ -79,10 +79,8 @@ constexpr int sweeps_in_run = 10;
 std::vector<double> selective_factors(const State& state, double wished, const std::vector<double>& before) {
   const model::Bodies& bodies = state.model.bodies;
   const assembly::LinearSystem system(state.model, assembly::Listed::all);
-  std::vector<double> factor =
-      lift(system, bodies.mass, alike(assembly::largest_damping(state.model), system), wished,
-           {.sweeps = sweeps_in_run})
-          .factor;
+  const std::vector<double> damping(bodies.mass.size(), assembly::largest_damping(state.model));
+  std::vector<double> factor = lift(system, bodies.mass, damping, wished, {.sweeps = sweeps_in_run}).factor;
   count_first_contacts(state, system, wished, before, factor);
   spread_to_members(bodies, factor);
   return factor;

@@ -103,10 +103,10 @@ void read_timestep(const Section& root, SceneDraft& draft) {
   choice.dt = section->quantity("dt");
   const auto policy = section->text("policy");
   if (!policy) return;
-  const bool fixed = *policy == "fixed";
-  using enum model::TimestepPolicy;
-  for (const model::TimestepPolicy known : {estimate, bound, tracked, model::TimestepPolicy::fixed})
+  using Policy = model::TimestepPolicy;
+  for (const Policy known : {Policy::estimate, Policy::bound, Policy::tracked, Policy::fixed})
     if (*policy == model::name_of(known)) choice.policy = known;
+  const bool fixed = choice.policy == Policy::fixed;
   if (!section->has("safety")) choice.safety = model::default_safety(choice.policy);
   if (section->has("every") && (fixed || *policy == "estimate"))
     section->report(
