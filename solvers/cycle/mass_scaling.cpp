@@ -7,6 +7,7 @@
 
 #include "first_contact.hpp"
 #include "proven_step.hpp"
+#include "tracked_step.hpp"
 
 #include <algorithm>
 #include <array>
@@ -110,6 +111,25 @@ void scale_masses(State& state) {
       factor = differential_factors(state, wished, before);
   }
   state.model.bodies.mass_factor = std::move(factor);
+}
+
+void track_masses(State& state) {
+  const model::MassScaling& scaling = state.settings.mass_scaling.value();
+  const double wished = scaling.dt / state.settings.timestep.safety;
+  state.guard = track_step(state);
+  if (!state.guard) return scale_masses(state);
+  assembly::StepGuard& guard = *state.guard;
+  if (guard.dt >= wished) return;
+  model::Bodies& bodies = state.model.bodies;
+  bodies.mass_factor.clear();
+  const assembly::LinearSystem system(
+      state.model, assembly::WithinRooms{state.model, guard.room, guard.wall_way - state.list.wall_way});
+  Lift chosen = lift(system, bodies.mass, alike(assembly::largest_damping(state.model), system), wished,
+                     {.sweeps = sweeps_in_run});
+  spread_to_members(bodies, chosen.factor);
+  bodies.mass_factor = std::move(chosen.factor);
+  guard.weight = std::move(chosen.weight);
+  guard.dt = wished;
 }
 
 ScaledMasses scaled_masses(const model::Bodies& bodies) {

@@ -35,6 +35,12 @@ std::int64_t between_bounds(const model::Scene& settings, bool varies) {
 TimestepPolicy policy_of(const model::Scene& settings) {
   const model::TimestepChoice choice = settings.timestep;
   const bool varies = stiffness_varies(settings);
+  if (settings.mass_scaling && settings.mass_scaling->form == model::MassScaling::Form::selective &&
+      choice.policy == model::TimestepPolicy::tracked && settings.surfaces.empty() &&
+      !settings.cell.deforms())
+    return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },
+            .every = choice.every > 0 ? choice.every : steps_between_proofs,
+            .prepare = track_masses};
   if (settings.mass_scaling)
     return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },
             .every = between_bounds(settings, varies),

@@ -328,6 +328,25 @@ TEST(SelectiveMassScaling, ARestartGoesOnToTheBit) {
   }
 }
 
+// Beside policy `tracked` the acting contacts are never beyond the limit, whatever closes on the way.
+TEST(SelectiveMassScaling, OfWhatIsTrackedIsStableAtEveryStep) {
+  for (const char* law : {"law: linear, kn: 1e4, ks: 5e3, friction: 0.4, beta_n: 0.2",
+                          "law: hertz, effective_young: 1e7, effective_shear: 5e6, friction: 0.4"}) {
+    const model::Scene scene = io::read_scene_text(
+        heap(selective, law) + "timestep: {policy: tracked, safety: 1}\n", ".", "heap.yaml");
+    expect_to_continue(scene, 300, {0, 1, 133});
+    cycle::Cycle cycle(cycle::start(scene), cycle::policy_of(scene));
+    std::int64_t heavier = 0;
+    for (int step = 0; step < 300; ++step) {
+      cycle.step();
+      EXPECT_EQ(cycle.state().dt, 1e-4);
+      EXPECT_GE(limit_of(cycle.state(), assembly::Listed::acting), 1e-4 * (1 - rounding)) << law << step;
+      heavier = std::max(heavier, cycle::scaled_masses(cycle.state().model.bodies).heavier);
+    }
+    EXPECT_GT(heavier, 0) << law;
+  }
+}
+
 // Its time is the true one: what moves goes on moving when it is switched off, unlike with the other forms.
 TEST(SelectiveMassScaling, IsSwitchedOffInAState) {
   const io::TemporaryFolder folder;

@@ -11,6 +11,7 @@ namespace eigengrain::cycle {
 ///             count that are touched now, so there it is asked every 100 steps and holds for these
 ///   fixed     the scene's dt
 /// Where the scene scales masses, the step is the one that it asks for, and masses are renewed instead
+/// (`selective` with policy `tracked`: where a proof within rooms asks for it)
 /// (cycle/mass_scaling.hpp), as often as `bound` would be asked. Bounds count the largest α for all bodies.
 /// Where stiffnesses follow the overlap both are asked every few steps, and hold for the overlaps of the
 /// moment, and for the impacts of balls that are near. Balls that touch nothing count in the first two with
