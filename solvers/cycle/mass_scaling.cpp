@@ -124,8 +124,8 @@ void track_masses(State& state) {
   bodies.mass_factor.clear();
   const assembly::LinearSystem system(
       state.model, assembly::WithinRooms{state.model, guard.room, guard.wall_way - state.list.wall_way});
-  Lift chosen = lift(system, bodies.mass, alike(assembly::largest_damping(state.model), system), wished,
-                     {.sweeps = sweeps_in_run});
+  const std::vector<double> damping(bodies.mass.size(), assembly::largest_damping(state.model));
+  Lift chosen = lift(system, bodies.mass, damping, wished, {.sweeps = sweeps_in_run});
   spread_to_members(bodies, chosen.factor);
   bodies.mass_factor = std::move(chosen.factor);
   guard.weight = std::move(chosen.weight);

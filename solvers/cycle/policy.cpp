@@ -54,7 +54,10 @@ TimestepPolicy policy_of(const model::Scene& settings) {
               },
               choice.every > 0 ? choice.every : between_bounds(settings, varies)};
     case model::TimestepPolicy::tracked: {
-      const std::int64_t every = choice.every > 0 ? choice.every : steps_between_proofs;
+      const bool has_guard = settings.surfaces.empty() && !settings.cell.deforms();
+      const std::int64_t every = choice.every > 0 ? choice.every
+                                 : has_guard      ? steps_between_proofs
+                                                  : between_bounds(settings, varies);
       return {.dt =
                   [choice, varies](const assembly::State& state) {
                     const auto guard = state.guard ? state.guard : track_step(state);

@@ -4,6 +4,8 @@
 #include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/cycle/step_prover.hpp"
 
+#include "proven_step.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -90,7 +92,7 @@ void make_room(const State& state, StepGuard& guard) {
 /// Whether proofs of this kind are made here.
 bool can_track(const State& state) {
   const model::Bodies& bodies = state.model.bodies;
-  return !state.model.cell.deforms() && state.model.surfaces.empty() && state.model.contacts.size() > 0 &&
+  return !state.model.cell.deforms() && state.model.surfaces.empty() &&
          state.list.position.size() == bodies.position.size() &&
          !model::radii_change(bodies, state.time, std::numeric_limits<double>::infinity());
 }
@@ -99,7 +101,7 @@ void prove_from_scratch(StepProver& prover, StepGuard& guard) {
   prover.set_weights(std::vector<double>(prover.weights().size(), 1.0));
   const double bound = prover.bound();
   guard.dt = prover.sharpen(std::numeric_limits<double>::infinity(), content);
-  guard.gain = guard.dt / bound;
+  guard.gain = std::isfinite(guard.dt) ? guard.dt / bound : 1.0;
 }
 
 /// Tries to prove more than `guard.dt`, which the prover's weights prove.
@@ -153,6 +155,8 @@ std::optional<StepGuard> track_step(const State& state) {
     prove_from_scratch(prover, guard);
     guard.pause = guard.last_pause = shortest_pause;
   }
+  // Nothing can touch within the rooms: what comes after is as good as known.
+  if (!std::isfinite(guard.dt)) guard.dt = proven_step(state, stiffness_varies(state.settings));
   if (!std::isfinite(guard.dt)) return std::nullopt;
   guard.weight = prover.weights();
   return guard;

@@ -84,7 +84,7 @@ class SlowFirst {
 };
 
 LowModes dense_modes(const LinearSystem& system, int count, double floor) {
-  LowModes result{.floor = floor};
+  LowModes result{.lambda = {}, .residual = {}, .floor = floor};
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(assembly::dense_scaled_stiffness(system),
                                                            Eigen::EigenvaluesOnly);
   for (const double lambda : all.eigenvalues()) {
@@ -141,7 +141,7 @@ LowModes low_modes(const LinearSystem& system, int count, double largest) {
   EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
   if (converged < 1)
     throw SolverError(fmt::format("the slowest modes did not converge to a residual of {}", tolerance));
-  LowModes result{.floor = floor};
+  LowModes result{.lambda = {}, .residual = {}, .floor = floor};
   for (PetscInt k = 0; k < std::min<PetscInt>(converged, count); ++k) {
     EIGENGRAIN_PETSC(EPSGetEigenvector(solver.get(), k, first, nullptr));
     judge(slow.stiffness(), first, result);
