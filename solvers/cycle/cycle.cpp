@@ -77,7 +77,7 @@ Cycle::Cycle(State state, TimestepPolicy policy)
   if (std::ssize(state_.list.position) != state_.model.bodies.size() ||
       state_.list.wall_lever.size() != state_.model.wall_poses.size())
     list_anew();
-  if (state_.settings.timestep.policy != model::TimestepPolicy::tracked || state_.model.cell.deforms() ||
+  if (!policy_.keeps_guard || state_.next_dt == 0 || state_.model.cell.deforms() ||
       (state_.guard && std::ssize(state_.guard->position) != state_.model.bodies.size()))
     state_.guard.reset();
   if (state_.next_dt == 0) choose_timestep();
@@ -134,8 +134,8 @@ double Cycle::move(double duration, double dt, const Cell& cell) {
 }
 
 bool Cycle::list_is_old() const {
-  const double half_skin = 0.5 * state_.list.skin;
-  if (!(state_.list.wall_way <= half_skin)) return true;
+  const double half_skin = 0.5 * state_.list.skin - state_.list.growth;
+  if (!(half_skin >= 0) || !(state_.list.wall_way <= half_skin)) return true;
   for (std::size_t i = 0; i < state_.list.position.size(); ++i)
     if (!((state_.model.bodies.position[i] - state_.list.position[i]).squaredNorm() <= half_skin * half_skin))
       return true;

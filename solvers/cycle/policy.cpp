@@ -40,7 +40,8 @@ TimestepPolicy policy_of(const model::Scene& settings) {
       !settings.cell.deforms())
     return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },
             .every = choice.every > 0 ? choice.every : steps_between_proofs,
-            .prepare = track_masses};
+            .prepare = track_masses,
+            .keeps_guard = true};
   if (settings.mass_scaling)
     return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },
             .every = between_bounds(settings, varies),
@@ -65,7 +66,8 @@ TimestepPolicy policy_of(const model::Scene& settings) {
                   },
               .every = every,
               .prepare = [](assembly::State& state) { state.guard = track_step(state); },
-              .worth_a_change = 1.0};
+              .worth_a_change = 1.0,
+              .keeps_guard = true};
     }
     case model::TimestepPolicy::estimate:
       break;

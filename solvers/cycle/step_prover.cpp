@@ -125,6 +125,8 @@ bool StepProver::holds(std::int32_t body, double mu) {
   const double viscous = system_.damping.empty() ? 0 : mu;
   const double rounding = rounding_of_block(std::ssize(blocks_->ends(body)));
   ++looked_at_;
+  // What is found here holds up to this μ only.
+  if (!system_.damping.empty()) ceiling_mu_ = std::min(ceiling_mu_, mu);
   ceiling_[body] = blocks_->bound(body, weight_, viscous) * (1 + rounding);
   if (ceiling_[body] <= sigma) return true;
   if (!below(blocks_->block(body, weight_, viscous), sigma, rounding)) return false;

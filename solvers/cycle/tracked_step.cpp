@@ -55,7 +55,7 @@ class Rooms {
   double of_body(std::size_t row) const {
     const model::Bodies& bodies = state_.model.bodies;
     const double way = (bodies.position[row] - state_.list.position[row]).norm();
-    return at_most(0.5 * state_.list.skin - way, bodies.velocity[row].norm());
+    return at_most(0.5 * state_.list.skin - state_.list.growth - way, bodies.velocity[row].norm());
   }
 
   double of_walls() const {
@@ -68,7 +68,7 @@ class Rooms {
       speed = std::max(
           speed, velocity.translation.norm() + state_.list.wall_lever[m] * velocity.spin.norm() + servo);
     }
-    return at_most(0.5 * state_.list.skin - state_.list.wall_way, speed);
+    return at_most(0.5 * state_.list.skin - state_.list.growth - state_.list.wall_way, speed);
   }
 
  private:

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -59,6 +60,8 @@ class Experiment {
     std::vector<double> before(start_.size());
     std::vector<double> now(start_.size());
     motion_.get(moving, before);
+    std::vector<double> older(before.size());
+    std::transform(before.begin(), before.end(), older.begin(), std::negate());  // as if it had alternated
     const double initial = std::sqrt(product(before, before));
     cycle::Cycle cycle(std::move(moving), {[dt](const assembly::State&) { return dt; }, 0});
     double second_quarter = 0;
@@ -70,13 +73,14 @@ class Experiment {
       cycle.step();
       ++limit_.steps;
       motion_.get(cycle.state(), now);
-      const double alternating = half_difference(now, before);
+      const double alternating = alternating_part(now, before, older);
       grown = !(alternating <= beyond_doubt * initial);  // also if it is no number
       smooth = product(now, before) > 0;
       const std::int64_t quarter = 4 * n / steps_;
       if (quarter == 1) second_quarter = std::max(second_quarter, alternating);
       if (quarter == 3) last_quarter = std::max(last_quarter, alternating);
-      std::swap(now, before);
+      std::swap(older, before);
+      std::swap(before, now);
     }
     add_changes(rest_, cycle.state(), limit_.reservations);
     grown = grown || last_quarter > growth_in_half_a_run * second_quarter;
@@ -102,11 +106,16 @@ class Experiment {
   static double product(const std::vector<double>& a, const std::vector<double>& b) {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
   }
-  /// What changes its sign with every step. Slow and rigid motions, which are no matter of the step, cancel.
-  static double half_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  /// |¼ (now - 2 before + older)|: what changes its sign with every step counts in full, slow and rigid
+  /// motions cancel, and what grows smoothly counts by the square of its rate only.
+  static double alternating_part(const std::vector<double>& now, const std::vector<double>& before,
+                                 const std::vector<double>& older) {
     double sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-    return 0.5 * std::sqrt(sum);
+    for (std::size_t k = 0; k < now.size(); ++k) {
+      const double part = 0.25 * (now[k] - 2 * before[k] + older[k]);
+      sum += part * part;
+    }
+    return std::sqrt(sum);
   }
 
   assembly::State rest_;

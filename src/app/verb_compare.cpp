@@ -73,7 +73,9 @@ struct Limit {
 Limit limit_of(const assembly::State& state) {
   const assembly::LinearSystem system(state.model);
   if (!system.elements.empty() && !system.unknowns.free_components().empty()) {
-    const double limit = timestep::critical_timestep(system, assembly::largest_damping(state.model)).limit;
+    const double limit =
+        timestep::critical_timestep(system, assembly::damping_of_unknowns(state.model, system.unknowns))
+            .limit;
     if (std::isfinite(limit)) return {limit, "true limit of the cycle at the start"};
   }
   model::Scene settings = state.settings;

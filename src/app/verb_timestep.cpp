@@ -143,10 +143,12 @@ void print(const timestep::EmpiricalLimit& found, const timestep::Truth& truth) 
 /// What the limit of the cycle counts with.
 std::string damping_text(const assembly::Model& model) {
   const double alpha = assembly::largest_damping(model);
-  if (alpha == 0) return "undamped";
+  const bool dashpots = !assembly::LinearSystem(model).damping.empty();
+  const char* const beside = dashpots ? " and dashpots" : "";
+  if (alpha == 0) return dashpots ? "with dashpots" : "undamped";
   return model.bodies.damping.empty()
-             ? fmt::format("with local damping {:g}", alpha)
-             : fmt::format("with the local damping of each body, at most {:g}", alpha);
+             ? fmt::format("with local damping {:g}{}", alpha, beside)
+             : fmt::format("with the local damping of each body, at most {:g}{}", alpha, beside);
 }
 
 /// What is to be thought of an estimate.

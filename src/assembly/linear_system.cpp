@@ -39,18 +39,24 @@ std::vector<contact::ContactDamping> contact_damping(const Model& model, const W
   std::vector<contact::ContactDamping> damping;
   if (!has_dashpots(model)) return damping;
   const std::vector<double>& mass = model.bodies.mass;
-  for_each_element(model, which, [&](const auto& law, const contact::ContactElement& e) {
-    contact::ContactDamping& found = damping.emplace_back();
-    if constexpr (contact::asks_rate<std::decay_t<decltype(law)>>) {
-      const double a = mass[e.a];
-      const double reduced = e.b == contact::no_body ? a : a * mass[e.b] / (a + mass[e.b]);
-      const contact::DampingRatios beta = law.damping();
-      found = {.beta_n = beta.normal,
-               .beta_s = beta.shear,
-               .normal = 2 * beta.normal * std::sqrt(reduced * e.stiffness.normal),
-               .shear = 2 * beta.shear * std::sqrt(reduced * e.stiffness.shear)};
-    }
-  });
+  for_each_element(
+      model, which, [&](const auto& law, const contact::ContactElement& e, const contact::Pair& pair) {
+        contact::ContactDamping& found = damping.emplace_back();
+        if constexpr (contact::asks_rate<std::decay_t<decltype(law)>>) {
+          const double a = mass[e.a];
+          const double reduced = e.b == contact::no_body ? a : a * mass[e.b] / (a + mass[e.b]);
+          const contact::DampingRatios beta = law.damping();
+          found = {.beta_n = beta.normal,
+                   .beta_s = beta.shear,
+                   .normal = 2 * beta.normal * std::sqrt(reduced * e.stiffness.normal),
+                   .shear = 2 * beta.shear * std::sqrt(reduced * e.stiffness.shear)};
+          if constexpr (std::is_same_v<Which, WithinRooms>) {  // √k has the root of the factor only
+            const double root = std::sqrt(which.factor(pair, e.b != contact::no_body));
+            found.normal *= root;
+            found.shear *= root;
+          }
+        }
+      });
   return damping;
 }
 

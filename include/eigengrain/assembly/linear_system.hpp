@@ -3,6 +3,7 @@
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/stiffness.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
+#include "eigengrain/assembly/within_rooms.hpp"
 #include "eigengrain/contact/element.hpp"
 
 #include <vector>

@@ -5,9 +5,7 @@
 #include "eigengrain/contact/bonds/bond.hpp"
 #include "eigengrain/contact/element.hpp"
 
-#include <algorithm>
 #include <concepts>
-#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -26,40 +24,6 @@ inline constexpr double typical_overlap = 1e-3;
 /// Which of the listed contacts count: those that act now, or all, as if those that are near acted too.
 enum class Listed { acting, all };
 
-/// Those that act now or can come to act while no body leaves its room, nor a wall: with the stiffness at the
-/// deepest that they can come to, times 1 + 9 φ for what a turn of the contact by φ can add to the
-/// eigenvalues of blocks; at clumps 1 + 18 φ (1 + m R²/I) (docs/theory.md, "Tracking").
-struct WithinRooms {
-  const Model& model;
-  std::span<const double> room;  ///< [bodies] m
-  double wall_room = 0;          ///< m
-
-  /// How much nearer the sides of a pair can come, m.
-  double approach(const contact::Pair& pair, bool with_ball) const {
-    return room[static_cast<std::size_t>(pair.a)] +
-           (with_ball ? room[static_cast<std::size_t>(pair.b)] : wall_room);
-  }
-  double factor(const contact::Pair& pair, bool with_ball) const {
-    const std::vector<double>& radius = model.bodies.radius;
-    double apart = radius[static_cast<std::size_t>(pair.a)];
-    double sensitivity = sensitivity_of(pair.a);
-    if (with_ball) {
-      apart += radius[static_cast<std::size_t>(pair.b)];
-      sensitivity = std::max(sensitivity, sensitivity_of(pair.b));
-    }
-    return 1 + sensitivity * approach(pair, with_ball) / apart;
-  }
-
- private:
-  double sensitivity_of(std::int32_t row) const {
-    const model::Clumps& clumps = model.bodies.clumps;
-    const std::int32_t clump = clumps.empty() ? model::Clumps::none : clumps.of(row);
-    if (clump == model::Clumps::none) return 9;
-    const auto c = static_cast<std::size_t>(clump);
-    return 18 * (1 + clumps.mass[c] * clumps.radius[c] * clumps.radius[c] / clumps.inertia[c].minCoeff());
-  }
-};
-
 /// Whether a contact counts; its overlap becomes the one at which it is judged.
 template <class Law>
 bool counts(Listed which, const Law& law, const typename Law::State& state, const contact::Pair& /*pair*/,
@@ -68,18 +32,11 @@ bool counts(Listed which, const Law& law, const typename Law::State& state, cons
   motion.overlap = typical_overlap * motion.reduced_radius;
   return which == Listed::all;
 }
-template <class Law>
-bool counts(const WithinRooms& which, const Law& law, const typename Law::State& state,
-            const contact::Pair& pair, bool with_ball, contact::ContactMotion& motion) {
-  motion.overlap += which.approach(pair, with_ball);
-  return law.acts(motion, state);
-}
-
 /// Calls visit(law, element), or visit(law, element, pair), for every contact that counts, group after group,
 /// in the order of the contacts. An end at a ball of a clump is one at the clump's holder, with the lever
 /// from the clump's centre. Cost O(contacts); nothing is allocated here.
 ///
-/// which  Listed or WithinRooms
+/// which  Listed or WithinRooms (assembly/within_rooms.hpp)
 template <class Which, class Visit>
 void for_each_element(const Model& model, const Which& which, const Visit& visit) {
   const contact::Placement placement = model.placement();
@@ -103,7 +60,7 @@ void for_each_element(const Model& model, const Which& which, const Visit& visit
           .lever_b = geometry.lever_b,
           .stiffness = group.law.stiffness(motion, group.states[c]),
       };
-      if constexpr (std::is_same_v<Which, WithinRooms>)
+      if constexpr (requires { which.factor(group.pairs[c], true); })
         element.stiffness = which.factor(group.pairs[c], Kinematics::second_is_body) * element.stiffness;
       if (!model.bodies.clumps.empty()) {
         element.lever_a += lever_of(model.bodies, element.a);

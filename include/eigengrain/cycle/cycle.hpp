@@ -23,6 +23,8 @@ struct TimestepPolicy {
   /// A step chosen anew is taken where it is shorter, or longer by this factor: one that changes with every
   /// contact costs accuracy and gains nothing.
   double worth_a_change = 1.05;
+  /// Whether `prepare` keeps a guard of the step (assembly::StepGuard) in the state.
+  bool keeps_guard = false;
 };
 
 /// A scene at rest in time: bodies sorted, near pairs listed, forces of the first moment. Velocities are

@@ -145,6 +145,8 @@ std::vector<ComparedScene> compare_scenes(const Options& options) {
       compare(options_for(options, files[k]), scene);
     } catch (const SolverError& error) {
       scene.skipped = error.what();
+    } catch (const InputError& error) {  // a damaged state must not cost what was computed before it
+      scene.skipped = error.what();
     }
     if (files.size() > 1)
       fmt::print(stderr, "{}/{} {}: {}\n", k + 1, files.size(), scene.name,
