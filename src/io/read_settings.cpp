@@ -108,11 +108,9 @@ void read_timestep(const Section& root, SceneDraft& draft) {
     if (*policy == model::name_of(known)) choice.policy = known;
   const bool fixed = choice.policy == Policy::fixed;
   if (!section->has("safety")) choice.safety = model::default_safety(choice.policy);
-  if (section->has("every") && (fixed || *policy == "estimate"))
-    section->report(
-        "every", fmt::format("has no meaning with policy {}; remove it, or write policy: tracked", *policy));
-  else
-    choice.every = read_every(*section);
+  choice.every = read_every(*section);
+  if (section->has("every") && fixed)
+    section->report("every", "has no meaning with policy fixed; remove it, or write policy: tracked");
   if (fixed && !section->has("dt")) section->report_missing("dt", ", which policy fixed needs");
   if (!fixed && section->has("dt"))
     section->report(

@@ -20,7 +20,7 @@ struct Threads {
 };
 
 /// All that moves in a state: balls, clumps, forces, shear, the number of bonds, walls, surfaces, and what
-/// the near list was made for.
+/// the near list was made for, and the proof of the step.
 inline std::string bits_of(const assembly::State& state) {
   std::string bits;
   const auto add = [&](const auto& column) {
@@ -50,6 +50,12 @@ inline std::string bits_of(const assembly::State& state) {
   add(std::vector<Mat3>{state.model.cell.edges, state.model.cell.rate, state.list.edges});
   add(std::vector<double>{state.time, state.list.wall_way});
   add(state.list.wall_lever);
+  if (state.guard) {
+    add(state.guard->position);
+    add(state.guard->room);
+    add(state.guard->weight);
+    add(std::vector<double>{state.guard->dt, state.guard->wall_way, state.guard->gain});
+  }
   bits += std::to_string(assembly::count_bonds(state.model));
   return bits;
 }

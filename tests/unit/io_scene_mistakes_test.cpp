@@ -49,20 +49,21 @@ TEST(Mistakes, AllOfAFileAreReportedAtOnceInTheOrderOfItsLines) {
   });
   EXPECT_THAT(
       all,
-      ElementsAre(StartsWith("scene.yaml:1: gravty: unknown key; did you mean \"gravity\"?"),
-                  "scene.yaml:2: materials[0].density: \"2500 kg\" is a mass; a density is wanted, e.g. "
-                  "\"2500 kg/m3\"",
-                  StartsWith("scene.yaml:3: contacts[0].fricton: unknown key; did you mean \"friction\"? "
-                             "(a linear contact takes kn, ks, friction, tension"),
-                  HasSubstr("scene.yaml:4: balls[0].material: unknown material \"grian\"; did you mean "
-                            "\"grain\"?"),
-                  "scene.yaml:4: balls[0].position[1]: \"nan\" is not a finite number",
-                  HasSubstr("scene.yaml:4: balls[0].radius: \"0\" is out of range; a value > 0 is wanted"),
-                  HasSubstr("scene.yaml:5: walls[0].plane.point: 2 values; three are wanted"),
-                  HasSubstr("scene.yaml:5: walls[0].plane.normal: zero, which has no direction"),
-                  HasSubstr("scene.yaml:6: timestep.safety: \"2\" is out of range; a value > 0 and <= 1"),
-                  HasSubstr("scene.yaml:6: timestep.policy: \"fxed\" is none of estimate, fixed, bound; "
-                            "did you mean \"fixed\"?")));
+      ElementsAre(
+          StartsWith("scene.yaml:1: gravty: unknown key; did you mean \"gravity\"?"),
+          "scene.yaml:2: materials[0].density: \"2500 kg\" is a mass; a density is wanted, e.g. "
+          "\"2500 kg/m3\"",
+          StartsWith("scene.yaml:3: contacts[0].fricton: unknown key; did you mean \"friction\"? "
+                     "(a linear contact takes kn, ks, friction, tension"),
+          HasSubstr("scene.yaml:4: balls[0].material: unknown material \"grian\"; did you mean "
+                    "\"grain\"?"),
+          "scene.yaml:4: balls[0].position[1]: \"nan\" is not a finite number",
+          HasSubstr("scene.yaml:4: balls[0].radius: \"0\" is out of range; a value > 0 is wanted"),
+          HasSubstr("scene.yaml:5: walls[0].plane.point: 2 values; three are wanted"),
+          HasSubstr("scene.yaml:5: walls[0].plane.normal: zero, which has no direction"),
+          HasSubstr("scene.yaml:6: timestep.safety: \"2\" is out of range; a value > 0 and <= 1"),
+          HasSubstr("scene.yaml:6: timestep.policy: \"fxed\" is none of estimate, fixed, bound, tracked; "
+                    "did you mean \"fixed\"?")));
 }
 
 TEST(Mistakes, LinesAreThoseOfTheKeys) {

@@ -19,7 +19,6 @@
 #include <filesystem>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <string_view>
 
 namespace eigengrain::app {
@@ -45,15 +44,28 @@ std::vector<std::string> scenes_in(const fs::path& folder) {
   return files;
 }
 
-/// Names that tell the files apart: stems, with as much of the folders as it takes.
+/// The stem of a file with so many of its folders before it.
+std::string name_of(const fs::path& file, int folders) {
+  fs::path name = file.stem();
+  fs::path folder = file.parent_path();
+  for (int k = 0; k < folders && folder.has_filename(); ++k, folder = folder.parent_path())
+    name = folder.filename() / name;
+  return name.string();
+}
+
+/// Names that tell the files apart: stems, with as many of the folders as it takes.
 std::vector<std::string> names_of(const std::vector<std::string>& files) {
-  std::map<std::string, int> count;
-  for (const std::string& file : files) ++count[fs::path(file).stem().string()];
-  std::vector<std::string> names;
-  for (const std::string& file : files) {
-    const fs::path path = fs::absolute(file).lexically_normal();
-    const std::string stem = path.stem().string();
-    names.push_back(count[stem] == 1 ? stem : (path.parent_path().filename() / stem).string());
+  constexpr int most_folders = 64;
+  std::vector<std::string> names(files.size());
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const fs::path path = fs::absolute(files[k]).lexically_normal();
+    for (int folders = 0; folders < most_folders; ++folders) {
+      names[k] = name_of(path, folders);
+      const auto same = std::count_if(files.begin(), files.end(), [&](const std::string& other) {
+        return name_of(fs::absolute(other).lexically_normal(), folders) == names[k];
+      });
+      if (same == 1) break;
+    }
   }
   return names;
 }
