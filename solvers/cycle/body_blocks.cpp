@@ -1,5 +1,7 @@
 #include "body_blocks.hpp"
 
+#include "eigengrain/base/largest_eigenvalue.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,18 +15,23 @@ using contact::ContactElement;
 using contact::ContactStiffness;
 using contact::no_body;
 
-/// Levers that are along n but for this part count as along n: far less than what rounding_of_block adds.
+/// Levers that are along n but for this part count as along n: far less than what rounding() adds.
 constexpr double along_normal = 1e-13;
 
 std::vector<Vec6> scale_of_bodies(const LinearSystem& system, std::span<const double> mass_divisor) {
-  const assembly::Unknowns& unknowns = system.unknowns;
-  const std::vector<double> scale = system.inverse_sqrt_mass();
-  std::vector<Vec6> result(static_cast<std::size_t>(unknowns.bodies()), Vec6::Zero());
-  for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
-    result[unknowns.body(block)].segment<3>(unknowns.is_rotation(block) ? 3 : 0) =
-        Eigen::Map<const Vec3>(&scale[std::size_t{3} * block]);
-  for (std::size_t i = 0; i < mass_divisor.size(); ++i) result[i] *= std::sqrt(mass_divisor[i]);
-  return result;
+  std::vector<Vec6> scale = system.inverse_sqrt_mass_of_bodies();
+  for (std::size_t i = 0; i < mass_divisor.size(); ++i) scale[i] *= std::sqrt(mass_divisor[i]);
+  return scale;
+}
+
+/// No eigenvalue of a symmetric positive semidefinite S is larger: mean + √5 deviation, from trace and norm
+/// (Wolkowicz and Styan, Linear Algebra Appl. 29:471, 1980). What cancellation can hide in a nearly isotropic
+/// S is added to it.
+double eigenvalue_bound(double trace, double squared_norm) {
+  constexpr double hidden = 64 * std::numeric_limits<double>::epsilon();
+  const double mean = trace / 6;
+  const double square = squared_norm / 6;
+  return mean + std::sqrt(5 * (std::max(0.0, square - mean * mean) + hidden * square));
 }
 
 const Vec3& lever(const ContactElement& element, std::int32_t end) {
@@ -113,17 +120,6 @@ struct FullSum {
 
 }  // namespace
 
-double rounding_of_block(std::int64_t contacts) {
-  return 1e-12 + 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(contacts);
-}
-
-double eigenvalue_bound(double trace, double squared_norm) {
-  constexpr double hidden = 64 * std::numeric_limits<double>::epsilon();
-  const double mean = trace / 6;
-  const double square = squared_norm / 6;
-  return mean + std::sqrt(5 * (std::max(0.0, square - mean * mean) + hidden * square));
-}
-
 BodyBlocks::BodyBlocks(const LinearSystem& system, std::span<const double> mass_divisor)
     : system_(system), scale_(scale_of_bodies(system, mass_divisor)) {
   moves_.reserve(scale_.size());
@@ -211,12 +207,21 @@ double BodyBlocks::energy(std::int32_t body, std::int32_t end, const Vec6& x, do
          k.twist * about * about + k.bending * (turn.squaredNorm() - about * about);
 }
 
+double BodyBlocks::rounding(std::int32_t body) const {
+  return 1e-12 + 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(ends(body).size());
+}
+
 double BodyBlocks::bound(std::int32_t body, std::span<const double> weight, double mu) const {
+  const double on_safe_side = 1 + rounding(body);
   if (simple_[body] != 0)
-    return sum<RadialSum>(body, weight, mu)
-        .bound(scale_[body][0] * scale_[body][0], scale_[body][3] * scale_[body][3]);
+    return on_safe_side * sum<RadialSum>(body, weight, mu)
+                              .bound(scale_[body][0] * scale_[body][0], scale_[body][3] * scale_[body][3]);
   const Mat6 s = block(body, weight, mu);
-  return eigenvalue_bound(s.trace(), s.squaredNorm());
+  return on_safe_side * eigenvalue_bound(s.trace(), s.squaredNorm());
+}
+
+double BodyBlocks::eigenvalue(std::int32_t body, std::span<const double> weight, double mu) const {
+  return (1 + rounding(body)) * largest_eigenvalue(block(body, weight, mu));
 }
 
 }  // namespace eigengrain::cycle

@@ -2,22 +2,16 @@
 
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/base/adjacency.hpp"
+#include "eigengrain/base/parallel.hpp"
 #include "eigengrain/base/vec.hpp"
+#include "eigengrain/cycle/step_of.hpp"
 
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
 namespace eigengrain::cycle {
-
-/// Bound of the relative error of a block's eigenvalue: a sum over `contacts` positive semidefinite blocks,
-/// each of which takes some ten operations. Who adds it stays on the safe side.
-double rounding_of_block(std::int64_t contacts);
-
-/// No eigenvalue of a symmetric positive semidefinite S is larger: mean + √5 deviation, from trace and norm
-/// (Wolkowicz and Styan, Linear Algebra Appl. 29:471, 1980). What cancellation can hide in a nearly isotropic
-/// S is added to it.
-double eigenvalue_bound(double trace, double squared_norm);
 
 /// The 6×6 blocks of single bodies, scaled by masses from both sides, of which block bounds are made:
 ///
@@ -55,8 +49,30 @@ class BodyBlocks {
   Parts parts(std::int32_t body, std::span<const double> weight, double mu = 0) const;
   /// x·(K + μC)_c,ii x of one end, x in the scaled unknowns of the block, 1/s².
   double energy(std::int32_t body, std::int32_t end, const Vec6& x, double mu = 0) const;
-  /// No eigenvalue of block() is larger. Several times cheaper than the block where levers are along normals.
+  /// Bound of the relative error of a block's eigenvalues: a block is a sum of positive semidefinite ones,
+  /// one for each end, each of which takes some ten operations.
+  double rounding(std::int32_t body) const;
+  /// The largest eigenvalue of block(), rounded up, 1/s²; not a number where the block is none.
+  double eigenvalue(std::int32_t body, std::span<const double> weight, double mu = 0) const;
+  /// No eigenvalue of block() is larger, rounding included. Several times cheaper than the block where levers
+  /// are along normals.
   double bound(std::int32_t body, std::span<const double> weight, double mu = 0) const;
+  /// The largest eigenvalue() of all bodies; not a number if one is not. Few bodies need theirs.
+  ///
+  /// ceiling  gives for a body what bound() does
+  template <class Ceiling>
+  double largest(std::span<const double> weight, double mu, const Ceiling& ceiling) const {
+    std::vector<double> of_chunk(static_cast<std::size_t>((bodies() + chunk_size - 1) / chunk_size), 0.0);
+    for_chunks(bodies(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+      for (auto body = static_cast<std::int32_t>(begin); body < end; ++body)
+        if (!(ceiling(body) <= of_chunk[chunk]))
+          of_chunk[chunk] = larger(of_chunk[chunk], eigenvalue(body, weight, mu));
+    });
+    return std::accumulate(of_chunk.begin(), of_chunk.end(), 0.0, larger);
+  }
+
+  /// Of loops over bodies that look at their blocks.
+  static constexpr std::int64_t chunk_size = 1024;
 
  private:
   contact::ContactStiffness stiffness(std::int32_t contact, double mu) const;

@@ -164,4 +164,20 @@ FirstContact first_contact(const assembly::State& state, std::span<const std::in
   return result;
 }
 
+bool stiffness_varies(const model::Scene& settings) {
+  bool varies = false;
+  for (std::size_t r = 0; r < settings.contacts.size(); ++r) {
+    if (settings.contacts[r].law == "none") continue;
+    const auto index = static_cast<std::int32_t>(r);
+    const double low = head_on(settings.contacts[r], index, 1.0).stiffness.normal;
+    varies = varies || low != head_on(settings.contacts[r], index, 2.0).stiffness.normal;
+  }
+  return varies;
+}
+
+std::vector<std::int32_t> bodies_apart(const assembly::State& state, const assembly::LinearSystem& listed,
+                                       bool varies) {
+  return varies ? assembly::LinearSystem(state.model).unknowns.set_aside() : listed.unknowns.set_aside();
+}
+
 }  // namespace eigengrain::cycle

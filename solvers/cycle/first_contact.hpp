@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/state.hpp"
 #include "eigengrain/contact/law.hpp"
 #include "eigengrain/model/scene.hpp"
@@ -7,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace eigengrain::cycle {
 
@@ -35,5 +37,16 @@ double fastest_approach(const assembly::State& state);
 /// scene allow, at a velocity (m/s); of clumps, wherever on their surface it may be.
 FirstContact first_contact(const assembly::State& state, std::span<const std::int32_t> bodies,
                            double approach);
+
+/// Whether stiffnesses follow the overlap, so that a step has to be asked for while nothing opens or closes.
+bool stiffness_varies(const model::Scene& settings);
+
+/// Bodies (rows; holders of clumps) that are judged by the contact that they may form next: those without
+/// listed pairs, or where stiffness varies without acting contacts, as a near pair is listed with that of a
+/// typical overlap.
+///
+/// listed  the system of all listed pairs
+std::vector<std::int32_t> bodies_apart(const assembly::State& state, const assembly::LinearSystem& listed,
+                                       bool varies);
 
 }  // namespace eigengrain::cycle

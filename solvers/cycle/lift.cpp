@@ -1,6 +1,5 @@
 #include "eigengrain/cycle/lift.hpp"
 
-#include "eigengrain/base/largest_eigenvalue.hpp"
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/cycle/step_prover.hpp"
 
@@ -56,10 +55,8 @@ class Lifting {
 
   /// λ/μ² of a body's block, on the safe side of rounding.
   double ratio(std::int32_t body, std::span<const double> weight) const {
-    const double rounding = 1 + rounding_of_block(std::ssize(blocks_.ends(body)));
-    const double ceiling = blocks_.bound(body, weight, mu_) * rounding / sigma_;
-    if (ceiling <= 1) return ceiling;
-    return largest_eigenvalue(blocks_.block(body, weight, mu_)) * rounding / sigma_;
+    const double ceiling = blocks_.bound(body, weight, mu_) / sigma_;
+    return ceiling <= 1 ? ceiling : blocks_.eigenvalue(body, weight, mu_) / sigma_;
   }
 
   Lift result(std::vector<double> weight) const {

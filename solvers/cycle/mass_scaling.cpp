@@ -74,14 +74,18 @@ std::vector<double> differential_factors(const State& state, double wished,
   return factor;
 }
 
-/// Sweeps of a lift in a run: they come within a few percent of what more would find.
-constexpr int sweeps_in_run = 10;
+/// The lift that a run makes: with few sweeps, which come within a few percent of what more would find, and
+/// with the largest α for all.
+Lift lift_in_run(const State& state, const assembly::LinearSystem& system, double wished) {
+  const std::vector<double>& mass = state.model.bodies.mass;
+  const std::vector<double> damping(mass.size(), assembly::largest_damping(state.model));
+  return lift(system, mass, damping, wished, {.sweeps = 10});
+}
 
 std::vector<double> selective_factors(const State& state, double wished, const std::vector<double>& before) {
   const model::Bodies& bodies = state.model.bodies;
   const assembly::LinearSystem system(state.model, assembly::Listed::all);
-  const std::vector<double> damping(bodies.mass.size(), assembly::largest_damping(state.model));
-  std::vector<double> factor = lift(system, bodies.mass, damping, wished, {.sweeps = sweeps_in_run}).factor;
+  std::vector<double> factor = lift_in_run(state, system, wished).factor;
   count_first_contacts(state, system, wished, before, factor);
   spread_to_members(bodies, factor);
   return factor;
@@ -124,8 +128,7 @@ void track_masses(State& state) {
   bodies.mass_factor.clear();
   const assembly::LinearSystem system(
       state.model, assembly::WithinRooms{state.model, guard.room, guard.wall_way - state.list.wall_way});
-  const std::vector<double> damping(bodies.mass.size(), assembly::largest_damping(state.model));
-  Lift chosen = lift(system, bodies.mass, damping, wished, {.sweeps = sweeps_in_run});
+  Lift chosen = lift_in_run(state, system, wished);
   spread_to_members(bodies, chosen.factor);
   bodies.mass_factor = std::move(chosen.factor);
   guard.weight = std::move(chosen.weight);

@@ -35,9 +35,10 @@ std::int64_t between_bounds(const model::Scene& settings, bool varies) {
 TimestepPolicy policy_of(const model::Scene& settings) {
   const model::TimestepChoice choice = settings.timestep;
   const bool varies = stiffness_varies(settings);
-  if (settings.mass_scaling && settings.mass_scaling->form == model::MassScaling::Form::selective &&
-      choice.policy == model::TimestepPolicy::tracked && settings.surfaces.empty() &&
-      !settings.cell.deforms())
+  // Elsewhere no guard can be had (tracked_step.hpp).
+  const bool tracks = choice.policy == model::TimestepPolicy::tracked && settings.surfaces.empty() &&
+                      !settings.cell.deforms();
+  if (tracks && settings.mass_scaling && settings.mass_scaling->form == model::MassScaling::Form::selective)
     return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },
             .every = choice.every > 0 ? choice.every : steps_between_proofs,
             .prepare = track_masses,
@@ -55,9 +56,8 @@ TimestepPolicy policy_of(const model::Scene& settings) {
               },
               choice.every > 0 ? choice.every : between_bounds(settings, varies)};
     case model::TimestepPolicy::tracked: {
-      const bool has_guard = settings.surfaces.empty() && !settings.cell.deforms();
       const std::int64_t every = choice.every > 0 ? choice.every
-                                 : has_guard      ? steps_between_proofs
+                                 : tracks         ? steps_between_proofs
                                                   : between_bounds(settings, varies);
       return {.dt =
                   [choice, varies](const assembly::State& state) {

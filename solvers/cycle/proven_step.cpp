@@ -17,22 +17,6 @@ constexpr double content = 1.03;
 
 }  // namespace
 
-bool stiffness_varies(const model::Scene& settings) {
-  bool varies = false;
-  for (std::size_t r = 0; r < settings.contacts.size(); ++r) {
-    if (settings.contacts[r].law == "none") continue;
-    const auto index = static_cast<std::int32_t>(r);
-    const double low = head_on(settings.contacts[r], index, 1.0).stiffness.normal;
-    varies = varies || low != head_on(settings.contacts[r], index, 2.0).stiffness.normal;
-  }
-  return varies;
-}
-
-std::vector<std::int32_t> bodies_apart(const assembly::State& state, const assembly::LinearSystem& listed,
-                                       bool varies) {
-  return varies ? assembly::LinearSystem(state.model).unknowns.set_aside() : listed.unknowns.set_aside();
-}
-
 double proven_step(const assembly::State& state, bool varies) {
   const assembly::LinearSystem system(state.model, assembly::Listed::all);
   const std::vector<std::int32_t> apart = bodies_apart(state, system, varies);

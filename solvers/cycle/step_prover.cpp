@@ -28,8 +28,6 @@ constexpr std::size_t raises_in_any_case = 64;
 /// How far sharpen() goes at once.
 constexpr double first_stride = 1.04;
 
-constexpr std::int64_t chunk_size = 1024;
-
 std::vector<double> divisors(std::span<const double> local_damping) {
   std::vector<double> result(local_damping.begin(), local_damping.end());
   for (double& alpha : result) alpha += 1;
@@ -60,35 +58,23 @@ void StepProver::set_weights(std::vector<double> weights) {
   ceiling_mu_ = -1;
 }
 
+double StepProver::viscous(double mu) const {
+  return system_.damping.empty() ? 0 : mu;
+}
+
 void StepProver::look_at_all(double mu) {
-  if (system_.damping.empty()) mu = 0;
-  for_chunks(std::ssize(weight_), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t) {
-    for (auto body = static_cast<std::int32_t>(begin); body < end; ++body)
-      ceiling_[body] =
-          blocks_->bound(body, weight_, mu) * (1 + rounding_of_block(std::ssize(blocks_->ends(body))));
-  });
+  for_chunks(std::ssize(weight_), BodyBlocks::chunk_size,
+             [&](std::int64_t begin, std::int64_t end, std::int64_t) {
+               for (auto body = static_cast<std::int32_t>(begin); body < end; ++body)
+                 ceiling_[body] = blocks_->bound(body, weight_, viscous(mu));
+             });
   ceiling_mu_ = system_.damping.empty() ? std::numeric_limits<double>::infinity() : mu;
   looked_at_ += std::ssize(weight_);
 }
 
 double StepProver::largest(double mu) {
   if (!(mu <= ceiling_mu_)) look_at_all(mu);
-  const double viscous = system_.damping.empty() ? 0 : mu;
-  const std::int64_t chunks = (std::ssize(weight_) + chunk_size - 1) / chunk_size;
-  std::vector<double> largest_of_chunk(static_cast<std::size_t>(chunks), 0.0);
-  for_chunks(std::ssize(weight_), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
-    double& largest = largest_of_chunk[chunk];
-    for (auto body = static_cast<std::int32_t>(begin); body < end; ++body) {
-      if (ceiling_[body] <= largest) continue;
-      const double lambda = largest_eigenvalue(blocks_->block(body, weight_, viscous)) *
-                            (1 + rounding_of_block(std::ssize(blocks_->ends(body))));
-      if (std::isnan(lambda) || lambda > largest) largest = lambda;
-    }
-  });
-  double result = 0;
-  for (const double lambda : largest_of_chunk)
-    if (std::isnan(lambda) || lambda > result) result = lambda;
-  return result;
+  return blocks_->largest(weight_, viscous(mu), [&](std::int32_t body) { return ceiling_[body]; });
 }
 
 double StepProver::bound() {
@@ -122,21 +108,19 @@ double StepProver::bound() {
 
 bool StepProver::holds(std::int32_t body, double mu) {
   const double sigma = mu * mu;
-  const double viscous = system_.damping.empty() ? 0 : mu;
-  const double rounding = rounding_of_block(std::ssize(blocks_->ends(body)));
   ++looked_at_;
   // What is found here holds up to this μ only.
   if (!system_.damping.empty()) ceiling_mu_ = std::min(ceiling_mu_, mu);
-  ceiling_[body] = blocks_->bound(body, weight_, viscous) * (1 + rounding);
+  ceiling_[body] = blocks_->bound(body, weight_, viscous(mu));
   if (ceiling_[body] <= sigma) return true;
-  if (!below(blocks_->block(body, weight_, viscous), sigma, rounding)) return false;
+  if (!below(blocks_->block(body, weight_, viscous(mu)), sigma, blocks_->rounding(body))) return false;
   ceiling_[body] = sigma;
   return true;
 }
 
 bool StepProver::raise(std::int32_t body, double mu) {
-  const double rounding = 2 * rounding_of_block(std::ssize(blocks_->ends(body)));
-  const auto [own, others] = blocks_->parts(body, weight_, system_.damping.empty() ? 0 : mu);
+  const double rounding = 2 * blocks_->rounding(body);
+  const auto [own, others] = blocks_->parts(body, weight_, viscous(mu));
   const Mat6 room = mu * mu * (1 - rounding) * Mat6::Identity() - own;
   const Eigen::LLT<Mat6> root(room);
   if (root.info() != Eigen::Success) return false;  // no weight will do
@@ -218,8 +202,7 @@ void StepProver::update(std::span<const std::int32_t> contacts) {
   const auto renew = [&](std::int32_t body) {
     if (body == no_body) return;
     ++looked_at_;
-    ceiling_[body] =
-        blocks_->bound(body, weight_, mu) * (1 + rounding_of_block(std::ssize(blocks_->ends(body))));
+    ceiling_[body] = blocks_->bound(body, weight_, mu);
   };
   for (const std::int32_t contact : contacts) {
     const contact::ContactElement& element = system_.elements[static_cast<std::size_t>(contact)];

@@ -4,6 +4,7 @@
 #include "eigengrain/assembly/local_damping.hpp"
 #include "eigengrain/cycle/step_prover.hpp"
 
+#include "first_contact.hpp"
 #include "proven_step.hpp"
 
 #include <algorithm>

@@ -65,7 +65,7 @@ void halt(State& state) {
   for (Vec3& l : clumps.angular_momentum) l.setZero();
   state.model.cell.rate.setZero();  // bodies have nothing of its flow any more
   state.dt = 0;
-  state.next_dt = 0;
+  assembly::forget_step(state);
   assembly::renew_forces(state);
 }
 

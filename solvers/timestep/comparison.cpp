@@ -9,9 +9,6 @@
 namespace eigengrain::timestep {
 namespace {
 
-/// Above the truth by more than its own error: an eigenvalue errs by about the square of its residual.
-constexpr double tolerance = 1e-9;
-
 void judge(const Estimator& estimator, const Question& question, Comparison& result) {
   const Stopwatch watch;
   const Answer answer = estimator.find(question);
@@ -28,7 +25,7 @@ void judge(const Estimator& estimator, const Question& question, Comparison& res
                               .dt = answer.dt,
                               .range = answer.range,
                               .ratio_to_true = answer.dt / truth,
-                              .safe = answer.dt <= truth * (1 + tolerance),
+                              .safe = is_safe(answer.dt, truth),
                               .seconds = seconds,
                               .products = answer.products});
 }

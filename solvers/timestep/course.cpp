@@ -23,7 +23,7 @@ namespace eigengrain::timestep {
 namespace {
 
 cycle::Cycle started(assembly::State state, double dt, bool with_ledger) {
-  state.next_dt = 0;  // a state that was saved may bring another one along
+  assembly::forget_step(state);  // a state that was saved may bring another one along
   state.ledger.reset();
   if (with_ledger) measures::begin_ledger(state);
   return {std::move(state), {.dt = [dt](const assembly::State&) { return dt; }}};
@@ -37,7 +37,7 @@ std::vector<Vec3> places_of(const model::Bodies& bodies) {
 }
 
 double height_of(const assembly::Model& model) {
-  if (model.gravity.isZero(0)) return unknown;
+  if (model.gravity.isZero(0)) return not_there;
   const model::Bodies& bodies = model.bodies;
   double mass = 0;
   double moment = 0;

@@ -21,7 +21,7 @@ struct CoursePlan {
 /// Where all balls were at the samples, and all else that runs are compared by.
 struct Course {
   std::vector<std::vector<Vec3>> places;  ///< [samples][balls, by identity] centres, m
-  double imbalance = unknown;             ///< largest size of the ledger's balance error, J
+  double imbalance = not_there;           ///< largest size of the ledger's balance error, J
   double energy = 0;                      ///< largest kinetic + elastic energy, J
   Statistics statistics;
   std::vector<double> restitution;  ///< of the impacts, in their order

@@ -1,6 +1,7 @@
 #include "eigengrain/timestep/estimates.hpp"
 
 #include "eigengrain/cycle/bounds.hpp"
+#include "eigengrain/cycle/step_of.hpp"
 #include "eigengrain/cycle/step_prover.hpp"
 
 #include "timestep/estimates/contact_space.hpp"
@@ -8,13 +9,14 @@
 #include "timestep/estimates/lanczos.hpp"
 #include "timestep/estimates/matrix_bounds.hpp"
 #include "timestep/estimates/rules.hpp"
-#include "timestep/estimates/step_of.hpp"
 
 #include <array>
 #include <limits>
 
 namespace eigengrain::timestep {
 namespace {
+
+using cycle::step_of;
 
 /// Of the bounds that Lanczos' method proves but for chance.
 constexpr double failure = 1e-6;

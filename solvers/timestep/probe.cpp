@@ -5,7 +5,7 @@
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/measures/acting_contacts.hpp"
 
-#include "cycle/proven_step.hpp"
+#include "cycle/first_contact.hpp"
 
 #include <fmt/format.h>
 
@@ -80,7 +80,8 @@ assembly::State in_balance(assembly::State state) {
   stop(state);
   state.ledger.reset();
   state.breaks.clear();
-  state.dt = state.next_dt = 0;
+  state.dt = 0;
+  assembly::forget_step(state);
   assembly::renew_forces(state);
   model::Bodies& bodies = state.model.bodies;
   assembly::BodyForces sum{state.force, state.moment};

@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <string_view>
@@ -115,7 +116,7 @@ Statistics difference(const Statistics& x, const Statistics& y) {
 }
 
 double mean_of(const std::vector<double>& values, std::size_t count) {
-  if (count == 0) return unknown;
+  if (count == 0) return not_there;
   return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), 0.0) /
          static_cast<double>(count);
 }
@@ -255,6 +256,16 @@ class Study {
 };
 
 }  // namespace
+
+double steps_of(const StepStudyOptions& options) {
+  double runs = 0;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const double fraction : options.fractions) {
+    runs += 2 / fraction;
+    smallest = std::min(smallest, fraction);
+  }
+  return options.time / options.limit * (runs + (1 + 2 + 4) / smallest);
+}
 
 StepStudy study_steps(const assembly::State& start, const StepStudyOptions& options) {
   return Study(start, options).run();

@@ -9,6 +9,7 @@
 
 #include "certificate.hpp"
 #include "krylov.hpp"
+#include "quadratic.hpp"
 
 #include <fmt/format.h>
 

@@ -57,10 +57,7 @@ Input read_input(const Options& options) {
 }
 
 void adapt_to(std::span<const std::string> overrides, assembly::State& state) {
-  if (std::any_of(overrides.begin(), overrides.end(), touches_the_step)) {
-    state.next_dt = 0;
-    state.guard.reset();
-  }
+  if (std::any_of(overrides.begin(), overrides.end(), touches_the_step)) assembly::forget_step(state);
   if (state.ledger && std::any_of(overrides.begin(), overrides.end(), touches_the_energy)) {
     state.ledger.reset();
     state.settings.notes.emplace_back(

@@ -59,7 +59,7 @@ void add_petsc(CLI::App& verb, Options& options, const std::string& example) {
 }
 
 void add_page(CLI::App& verb, Options& options) {
-  verb.add_option("--output,--out", options.output, "write a page with pictures there (HTML, one file)")
+  verb.add_option("--output,--out", options.page, "write a page with pictures there (HTML, one file)")
       ->type_name("REPORT.html");
 }
 

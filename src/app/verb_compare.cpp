@@ -47,7 +47,7 @@ void write_page(const std::string& file, const std::string& html) {
 template <class Report>
 void publish(const Report& report, const Options& options) {
   write_json(options.json, to_json(report));
-  write_page(options.output, page_of(report));
+  write_page(options.page, page_of(report));
   print(report);
 }
 
@@ -83,22 +83,10 @@ Limit limit_of(const assembly::State& state) {
   return {cycle::policy_of(settings).dt(state), "proven for the first contacts that may form"};
 }
 
-/// How long a study will take: each fraction runs twice, once for its time alone; the smallest four more
-/// times, with 1, 1/2 and 1/4 of its step.
-double steps_of_study(const timestep::StepStudyOptions& study) {
-  double runs = 0;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const double fraction : study.fractions) {
-    runs += 2 / fraction;
-    smallest = std::min(smallest, fraction);
-  }
-  return study.time / study.limit * (runs + (1 + 2 + 4) / smallest);
-}
-
 }  // namespace
 
 void compare_timesteps(const Options& options) {
-  check_page(options.output);
+  check_page(options.page);
   for (const std::int64_t size : options.sizes)
     if (size < 10)
       throw InputError(
@@ -112,10 +100,8 @@ void compare_timesteps(const Options& options) {
 }
 
 void compare_steps(const Options& options) {
-  check_page(options.output);
-  Options reading = options;
-  reading.output.clear();
-  const assembly::State state = read_input(reading).state;
+  check_page(options.page);
+  const assembly::State state = read_input(options).state;
   if (!state.settings.stages.empty())
     throw InputError(
         fmt::format("{}: a scene with stages changes its settings on the way; compare steps takes one with "
@@ -127,7 +113,7 @@ void compare_steps(const Options& options) {
   timestep::StepStudyOptions study{
       .limit = limit.dt, .time = time_of(state, options, cycle::policy_of(state.settings).dt(state))};
   if (!options.fractions.empty()) study.fractions = options.fractions;
-  fmt::print(stderr, "about {:.2g} steps of the cycle in all\n", steps_of_study(study));
+  fmt::print(stderr, "about {:.2g} steps of the cycle in all\n", timestep::steps_of(study));
   publish(
       StepsReport{
           .name = state.settings.name, .limit = limit.what, .study = timestep::study_steps(state, study)},

@@ -143,7 +143,7 @@ void print(const timestep::EmpiricalLimit& found, const timestep::Truth& truth) 
 /// What the limit of the cycle counts with.
 std::string damping_text(const assembly::Model& model) {
   const double alpha = assembly::largest_damping(model);
-  const bool dashpots = !assembly::LinearSystem(model).damping.empty();
+  const bool dashpots = assembly::has_dashpots(model);
   const char* const beside = dashpots ? " and dashpots" : "";
   if (alpha == 0) return dashpots ? "with dashpots" : "undamped";
   return model.bodies.damping.empty()

@@ -15,19 +15,20 @@ struct Options {
   std::vector<std::string> overrides;  ///< key=value
   std::string petsc;                   ///< options for PETSc
   std::vector<std::string> regions;    ///< of measure: instead of those of the scene
-  std::string output;        ///< folder of results; empty: see read_input. Of generate, compare: a file
-  double tolerance = 1e-10;  ///< of relax: mean unbalanced ratio
-  std::int64_t max_steps = 1000000;  ///< of relax: explicit steps
-  bool tangent = false;              ///< of timestep: what the elastic stiffness leaves out
-  bool certify = false;              ///< of timestep: prove the truth at any size
-  bool empirical = false;            ///< of timestep: the limit by running, too
-  std::vector<std::string> scenes;   ///< of compare timesteps: files and folders
-  std::vector<std::int64_t> sizes;   ///< of compare timesteps: numbers of balls to measure costs at
-  std::vector<double> fractions;     ///< of compare steps: of the limit; empty: the usual ones
-  double time = 0;                   ///< of compare steps, s; 0: that of the scene
-  int modes = 0;                     ///< of timestep: how many of the modes that limit the step; 0: none
-  std::string modes_file;            ///< of timestep: their shapes; empty: none
-  std::optional<double> lift;        ///< of timestep: the step that masses are to make stable, s
+  std::string output;                  ///< folder of results; empty: see read_input. Of generate: a file
+  double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
+  std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
+  bool tangent = false;                ///< of timestep: what the elastic stiffness leaves out
+  bool certify = false;                ///< of timestep: prove the truth at any size
+  bool empirical = false;              ///< of timestep: the limit by running, too
+  std::string page;                    ///< of compare: file of the report; empty: none
+  std::vector<std::string> scenes;     ///< of compare timesteps: files and folders
+  std::vector<std::int64_t> sizes;     ///< of compare timesteps: numbers of balls to measure costs at
+  std::vector<double> fractions;       ///< of compare steps: of the limit; empty: the usual ones
+  double time = 0;                     ///< of compare steps, s; 0: that of the scene
+  int modes = 0;                       ///< of timestep: how many of the modes that limit the step; 0: none
+  std::string modes_file;              ///< of timestep: their shapes; empty: none
+  std::optional<double> lift;          ///< of timestep: the step that masses are to make stable, s
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.

@@ -97,7 +97,7 @@ Added add_balls(State& state, const model::Bodies& balls) {
     renew_list(state, state.list.skin);
     renew_forces(state);
     for (std::size_t i = first; i < bodies.position.size(); ++i) set_back(state, i);
-    state.next_dt = 0;
+    forget_step(state);
     state.ledger.reset();
   }
   return {.balls = count, .left_out = balls.size() - count};

@@ -161,7 +161,7 @@ void change_bodies(State& state, const model::BodyChange& change, const std::str
   }
   for (const std::int32_t row : selection.rows) set_ball_in_motion(state, row, change);
   for (const std::int32_t clump : selection.clumps) set_clump_in_motion(state, clump, change);
-  state.next_dt = 0;
+  forget_step(state);
   state.ledger.reset();
 }
 

@@ -149,7 +149,7 @@ std::int64_t choose_contacts(State& state, const model::ContactChoice& choice, c
     throw InputError(fmt::format("{}: no contact that acts is meant; look at where the balls are", where));
   renew_list(state, state.list.skin);
   renew_forces(state);
-  state.next_dt = 0;
+  forget_step(state);
   state.ledger.reset();
   return count;
 }

@@ -25,15 +25,6 @@ std::vector<double> mass_diagonal(const model::Bodies& bodies, const Unknowns& u
   return diagonal;
 }
 
-bool has_dashpots(const Model& model) {
-  bool found = false;
-  model.contacts.for_each_group([&](const auto& group) {
-    if constexpr (contact::asks_rate<typename std::decay_t<decltype(group)>::LawType>)
-      found = found || group.law.damping().normal > 0 || group.law.damping().shear > 0;
-  });
-  return found;
-}
-
 template <class Which>
 std::vector<contact::ContactDamping> contact_damping(const Model& model, const Which& which) {
   std::vector<contact::ContactDamping> damping;
@@ -61,6 +52,15 @@ std::vector<contact::ContactDamping> contact_damping(const Model& model, const W
 }
 
 }  // namespace
+
+bool has_dashpots(const Model& model) {
+  bool found = false;
+  model.contacts.for_each_group([&](const auto& group) {
+    if constexpr (contact::asks_rate<typename std::decay_t<decltype(group)>::LawType>)
+      found = found || group.law.damping().normal > 0 || group.law.damping().shear > 0;
+  });
+  return found;
+}
 
 LinearSystem with_viscosity(const LinearSystem& system, double mu) {
   LinearSystem result = system;
@@ -94,6 +94,15 @@ std::vector<double> LinearSystem::inverse_sqrt_mass() const {
   std::vector<double> scale(mass.size(), 0.0);
   for (const std::int32_t number : unknowns.free_components()) scale[number] = 1.0 / std::sqrt(mass[number]);
   return scale;
+}
+
+std::vector<Vec6> LinearSystem::inverse_sqrt_mass_of_bodies() const {
+  const std::vector<double> scale = inverse_sqrt_mass();
+  std::vector<Vec6> result(static_cast<std::size_t>(unknowns.bodies()), Vec6::Zero());
+  for (std::int32_t block = 0; block < unknowns.blocks(); ++block)
+    result[unknowns.body(block)].segment<3>(unknowns.is_rotation(block) ? 3 : 0) =
+        Eigen::Map<const Vec3>(&scale[std::size_t{3} * block]);
+  return result;
 }
 
 }  // namespace eigengrain::assembly

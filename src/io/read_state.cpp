@@ -290,7 +290,7 @@ bool scaling_changed(const model::Scene& stored, const model::Scene& now) {
 void begin_other_masses(const model::Scene& stored, assembly::State& state) {
   model::Bodies& bodies = state.model.bodies;
   bodies.mass_factor.clear();
-  state.next_dt = 0;
+  assembly::forget_step(state);
   if (model::keeps_time(stored.mass_scaling) && model::keeps_time(state.settings.mass_scaling)) return;
   state.dt = 0;
   const auto stop = [](Vec3& v, std::uint8_t fixed) { v -= model::free_part(v, fixed); };

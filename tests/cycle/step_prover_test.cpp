@@ -4,6 +4,7 @@
 #include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/io/scene_reader.hpp"
 
+#include "support/dense.hpp"
 #include "support/lattices.hpp"
 #include "support/laws.hpp"
 #include "support/motion.hpp"
@@ -22,26 +23,6 @@ using cycle::StepProver;
 
 constexpr double any = std::numeric_limits<double>::infinity();
 
-/// The largest stable step 2/μ, det(μ² M' - μ C - K) = 0 with M' = M/(1 + α) body by body, of a dense system.
-double true_limit(const System& system, const std::vector<double>& alpha) {
-  const assembly::LinearSystem viscous = assembly::with_viscosity(system, 1.0);
-  Eigen::MatrixXd k = assembly::dense_scaled_stiffness(system);
-  Eigen::MatrixXd c = assembly::dense_scaled_stiffness(viscous) - k;
-  const std::vector<std::int32_t> free = system.unknowns.free_components();
-  Eigen::VectorXd factor = Eigen::VectorXd::Ones(k.rows());
-  for (std::size_t f = 0; f < free.size() && !alpha.empty(); ++f)
-    factor[static_cast<Eigen::Index>(f)] =
-        std::sqrt(1 + alpha[static_cast<std::size_t>(system.unknowns.body(free[f] / 3))]);
-  k = (factor.asDiagonal() * k * factor.asDiagonal()).eval();
-  c = (factor.asDiagonal() * c * factor.asDiagonal()).eval();
-  const Eigen::Index n = k.rows();
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(2 * n, 2 * n);  // of (x, μx)
-  companion.topRightCorner(n, n).setIdentity();
-  companion.bottomLeftCorner(n, n) = k;
-  companion.bottomRightCorner(n, n) = c;
-  return 2 / Eigen::EigenSolver<Eigen::MatrixXd>(companion, false).eigenvalues().real().maxCoeff();
-}
-
 TEST(StepProver, ProvesNothingAboveTheTruthInRandomClusters) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -55,14 +36,14 @@ TEST(StepProver, ProvesNothingAboveTheTruthInRandomClusters) {
          .parameters = values_of("linear", {{"kn", 1},
                                             {"ks", 0.9 * uniform(random)},
                                             {"friction", 1},
-                                            {"beta_n", dashpots ? uniform(random) : 0},
+                                            {"beta_n", dashpots ? 2 * uniform(random) : 0},
                                             {"beta_s", dashpots ? uniform(random) : 0}})}};
     const System system(builder);
     if (system.elements.empty() || system.unknowns.free_components().empty()) continue;
     std::vector<double> alpha;
     if (scene % 4 > 1)
       for (std::int32_t i = 0; i < system.unknowns.bodies(); ++i) alpha.push_back(0.8 * uniform(random));
-    const double truth = true_limit(system, alpha);
+    const double truth = dense_limit(system, alpha);
     if (!std::isfinite(truth)) continue;
     ++judged;
     StepProver prover(system, alpha);
@@ -98,7 +79,7 @@ TEST(StepProver, ProvesNothingAboveTheTruthWithDashpotsHereAndThere) {
       dashpot.normal *= part;
       dashpot.shear *= part;
     }
-    const double truth = true_limit(system, {});
+    const double truth = dense_limit(system, {});
     if (!std::isfinite(truth)) continue;
     ++judged;
     StepProver prover(system);
@@ -117,6 +98,16 @@ TEST(StepProver, ProvesTheBlockBoundWithItsFirstWeights) {
   EXPECT_TRUE(prover.prove(prover.bound() * (1 - 1e-9)));
 }
 
+TEST(StepProver, WithOneAlphaIsTheUndampedOneOverItsRoot) {
+  std::mt19937_64 random(2);
+  const System system(random_cluster(random, 10, {.kn = 1, .ks = 0.5}));
+  EXPECT_NEAR(StepProver(system, 0.7).bound() / cycle::damped_timestep(StepProver(system).bound(), 0.7), 1,
+              1e-14);
+  EXPECT_NEAR(
+      StepProver(system, 0.7).sharpen(any) / cycle::damped_timestep(StepProver(system).sharpen(any), 0.7), 1,
+      1e-12);
+}
+
 // One ball on a wall: (2/ω)(√(ξ² + 1/(1 + α)) - ξ).
 TEST(StepProver, IsExactForOneBallWithDashpots) {
   for (const double beta : {0.0, 0.1, 1.0, 3.0})
@@ -124,7 +115,7 @@ TEST(StepProver, IsExactForOneBallWithDashpots) {
       SceneBuilder builder = with_law("linear", {{"kn", 1}, {"tension", 1}, {"beta_n", beta}});
       const System system(builder.ball({0, 0, 1 - 1e-9}).plane({0, 0, 0}, {0, 0, 1}));
       StepProver prover(system, std::vector<double>{alpha});
-      EXPECT_NEAR(prover.bound() / (2 * (std::sqrt(beta * beta + 1 / (1 + alpha)) - beta)), 1, 1e-9)
+      EXPECT_NEAR(prover.bound() / (2 * (std::sqrt(beta * beta + 1 / (1 + alpha)) - beta)), 1, 1e-11)
           << beta << " " << alpha;
     }
 }
@@ -140,7 +131,7 @@ TEST(StepProver, FindsTheWeightsOfAChainOfTwoSizes) {
     x += 3 * (1 - 1e-9);
   }
   const System system(builder);
-  const double truth = 2 / std::sqrt(system.spectrum().maxCoeff());
+  const double truth = dense_truth(system);
   StepProver prover(system);
   EXPECT_LT(prover.bound() / truth, 0.8);
   EXPECT_GT(prover.sharpen(any) / truth, 0.99);
@@ -163,7 +154,7 @@ balls:
 
 TEST(StepProver, GoesFartherThanSweepsInADensePacking) {
   const System system = dense_packing();
-  const double truth = 2 / std::sqrt(system.spectrum().maxCoeff());
+  const double truth = dense_truth(system);
   StepProver prover(system);
   const double proven = prover.sharpen(any);
   std::printf("block %.4f, 3 sweeps %.4f, raised where needed %.4f of the truth\n",
@@ -199,7 +190,7 @@ TEST(StepProver, LooksAgainWhereContactsChanged) {
   const std::int64_t looked = prover.blocks_looked_at();
   prover.update(changed);
   EXPECT_LE(prover.blocks_looked_at() - looked, 40);  // no more than the bodies of the contacts
-  const double truth = 2 / std::sqrt(system.spectrum().maxCoeff());
+  const double truth = dense_truth(system);
   ASSERT_LT(truth, before);
   EXPECT_FALSE(prover.prove(before));
   EXPECT_FALSE(prover.prove(truth * 1.0001));

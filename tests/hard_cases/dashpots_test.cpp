@@ -12,6 +12,11 @@
 namespace eigengrain::test {
 namespace {
 
+/// sqrt(1 + β²) - β: by how much dashpots shorten the limit of one mode.
+double shortened_by(double beta) {
+  return std::sqrt(1 + beta * beta) - beta;
+}
+
 // One contact has c = 2β√(½ m k_n), so C = √(2m/k_n) β K is proportional to K, and the top mode, ω² = 8
 // k_n/m, has ξ = ½ ω √(2m/k_n) β = 2β: the limit is (2/ω) F(2β). PFC3D's eq. 1.35 takes k_n/F(β)² of each
 // contact.
@@ -25,7 +30,7 @@ TEST(Dashpots, OfALatticeActTogetherAndRule135DoesNotKnow) {
     EXPECT_NEAR(found.truth.dt, std::sqrt(0.5), 1e-9);
     // A bound that is sharp here, as all blocks are alike; it is refined four times.
     EXPECT_NEAR(found.truth.limit / limit, 1, 1e-6) << beta;
-    const double rule = estimate_named(found, "diagonal").dt / limit;
+    const double rule = (*timestep::find_estimate(found, "diagonal")).dt / limit;
     EXPECT_NEAR(rule, std::sqrt(0.5) * shortened_by(beta) / shortened_by(2 * beta), 1e-6) << beta;
     EXPECT_GT(rule, before);
     before = rule;

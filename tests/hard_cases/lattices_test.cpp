@@ -73,7 +73,8 @@ TEST_P(LatticeCase, HasItsClosedForm) {
           fmt::format("{}, s = {}, rotation {}", lattice.name, s, held ? "held" : "free");
       EXPECT_NEAR(found.truth.dt * std::sqrt(lambda) / 2, 1, 1e-9) << what;
       if (!held && lattice.turning * s > lattice.held(s)) {
-        EXPECT_NEAR(estimate_named(found, "diagonal").ratio_to_true, std::sqrt(0.5), 1e-9) << what;
+        EXPECT_NEAR((*timestep::find_estimate(found, "diagonal")).ratio_to_true, std::sqrt(0.5), 1e-9)
+            << what;
       }
       const timestep::EmpiricalLimit runs = timestep::empirical_limit(state, found.truth);
       EXPECT_NEAR(runs.dt / found.truth.dt, 1, 2e-4) << what;

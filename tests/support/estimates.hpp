@@ -2,14 +2,14 @@
 
 #include "eigengrain/timestep/estimates.hpp"
 
+#include "support/dense.hpp"
 #include "support/scenes.hpp"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
-/// Estimates of the timestep by name, and the dense truth.
+/// Estimates of the timestep by name.
 namespace eigengrain::test {
 
 inline timestep::Answer answer_of(const timestep::Estimator& estimator, const System& system,
@@ -25,12 +25,6 @@ inline double estimate(std::string_view name, const System& system,
   const timestep::Answer answer = answer_of(*estimator, system, materials);
   if (!answer.left_out.empty()) throw std::invalid_argument(std::string(name) + ": " + answer.left_out);
   return answer.dt;
-}
-
-/// 2/√λ_max of the dense spectrum, s.
-inline double dense_truth(const System& system) {
-  const Eigen::VectorXd spectrum = system.spectrum();
-  return 2 / std::sqrt(spectrum[spectrum.size() - 1]);
 }
 
 inline double ratio(std::string_view name, const System& system) {

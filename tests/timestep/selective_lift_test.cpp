@@ -14,6 +14,7 @@
 #include "support/lattices.hpp"
 #include "support/laws.hpp"
 #include "support/restart.hpp"
+#include "support/scaled_heap.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -292,30 +293,12 @@ TEST(SelectiveMassScaling, LeavesMassesAloneWhereTheStepIsStable) {
   EXPECT_EQ(cycle::scaled_masses(state.model.bodies).added, 0);
 }
 
-/// Two sizes of balls and a clump that fall into a box.
-std::string heap(const std::string& scaling, const std::string& law) {
-  return R"(
-gravity: [0, 0, -9.81]
-materials: [{name: grain, density: 2500}]
-periodic: {box: [0.06, 0.06, 1], axes: [x, y]}
-balls:
-  - {position: [0.05, 0.05, 0.006], radius: 5 mm, material: grain}
-  - {position: [0.05, 0.051, 0.0128], radius: 2 mm, material: grain}
-clumps:
-  - balls: [{at: [0, 0, 0], radius: 5 mm}, {at: [6 mm, 0, 0], radius: 4 mm}, {at: [1 mm, 6 mm, 2 mm], radius: 3 mm}]
-    material: grain
-    instances: [{position: [0.02, 0.02, 0.01]}, {position: [0.045, 0.02, 0.01]}, {position: [0.03, 0.02, 0.03]}]
-walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]
-mass_scaling: )" +
-         scaling + "\ncontacts: [{between: [any, any], " + law + "}]\n";
-}
-
 constexpr const char* selective = "{form: selective, dt: 0.1 ms}";
 
 TEST(SelectiveMassScaling, ARestartGoesOnToTheBit) {
   for (const char* law : {"law: linear, kn: 1e4, ks: 5e3, friction: 0.4, beta_n: 0.2",
                           "law: hertz, effective_young: 1e7, effective_shear: 5e6, friction: 0.4"}) {
-    const model::Scene scene = io::read_scene_text(heap(selective, law), ".", "heap.yaml");
+    const model::Scene scene = io::read_scene_text(scaled_heap(selective, law), ".", "heap.yaml");
     expect_to_continue(scene, 300, {0, 1, 133});
     const auto run = [&](int threads) {
       const Threads with(threads);
@@ -333,7 +316,7 @@ TEST(SelectiveMassScaling, OfWhatIsTrackedIsStableAtEveryStep) {
   for (const char* law : {"law: linear, kn: 1e4, ks: 5e3, friction: 0.4, beta_n: 0.2",
                           "law: hertz, effective_young: 1e7, effective_shear: 5e6, friction: 0.4"}) {
     const model::Scene scene = io::read_scene_text(
-        heap(selective, law) + "timestep: {policy: tracked, safety: 1}\n", ".", "heap.yaml");
+        scaled_heap(selective, law) + "timestep: {policy: tracked, safety: 1}\n", ".", "heap.yaml");
     expect_to_continue(scene, 300, {0, 1, 133});
     cycle::Cycle cycle(cycle::start(scene), cycle::policy_of(scene));
     std::int64_t heavier = 0;
@@ -350,8 +333,8 @@ TEST(SelectiveMassScaling, OfWhatIsTrackedIsStableAtEveryStep) {
 // Its time is the true one: what moves goes on moving when it is switched off, unlike with the other forms.
 TEST(SelectiveMassScaling, IsSwitchedOffInAState) {
   const io::TemporaryFolder folder;
-  const model::Scene scene =
-      io::read_scene_text(heap(selective, "law: linear, kn: 1e4, ks: 5e3, friction: 0.4"), ".", "heap.yaml");
+  const model::Scene scene = io::read_scene_text(
+      scaled_heap(selective, "law: linear, kn: 1e4, ks: 5e3, friction: 0.4"), ".", "heap.yaml");
   cycle::Cycle cycle(cycle::start(scene), cycle::policy_of(scene));
   cycle.run(50);
   io::write_state(cycle.state(), folder.path() / "state.h5");

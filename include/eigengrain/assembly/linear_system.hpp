@@ -10,6 +10,9 @@
 
 namespace eigengrain::assembly {
 
+/// Whether any contact of a model, listed or to come, has dashpots by its law.
+bool has_dashpots(const Model& model);
+
 /// K, M and dashpots of a model as it stands, factored into its contacts: what estimates, bounds and solvers
 /// are asked about. It owns what it holds; the model may go.
 struct LinearSystem {
@@ -28,6 +31,8 @@ struct LinearSystem {
   /// [unknowns.size()] the diagonal of M^-½, with zeros at masked components: scaling K by it from both sides
   /// gives the symmetric matrix whose eigenvalues are those of M⁻¹K on the free components (and zeros).
   std::vector<double> inverse_sqrt_mass() const;
+  /// [bodies] The same as (u, θ) of each body, zero where a component is fixed or does not exist.
+  std::vector<Vec6> inverse_sqrt_mass_of_bodies() const;
 };
 
 /// The same system with K + μC in place of K, C the matrix of its dashpots: what decides how long the steps

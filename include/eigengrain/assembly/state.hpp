@@ -49,6 +49,13 @@ struct State {
   bool turns() const { return !model.bodies.spin.empty(); }
 };
 
+/// What has to be called wherever something changes that the step rests upon: it is chosen anew, and what was
+/// proven of it is no more.
+inline void forget_step(State& state) {
+  state.next_dt = 0;
+  state.guard.reset();
+}
+
 /// Adds bonds that broke on the way to the state, with its step, time and entry.
 inline void note_breaks(State& state, std::span<const BondBreak> broken) {
   for (BondBreak found : broken) {

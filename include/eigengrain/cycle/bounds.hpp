@@ -24,6 +24,13 @@ double damped_timestep(double undamped_dt, double local_damping);
 /// spheres, more for clumps (rotations along their principal axes), up to √3 in principle. s.
 double diagonal_estimate(const assembly::LinearSystem& system);
 
+/// The two parts of it, without dashpots, s; the estimate is the smaller one.
+struct DiagonalEstimate {
+  double translation = 0;
+  double rotation = 0;
+};
+DiagonalEstimate elastic_diagonal_estimate(const assembly::LinearSystem& system);
+
 /// A proven lower bound of the true critical step, for any positive weights d of the bodies (docs/theory.md):
 ///
 ///   λ_max <= max_i λ_max(M_i^-½ [Σ_c (1 + d_j/d_i) K_c,ii] M_i^-½),     Δt >= 2/√λ_max
@@ -47,8 +54,6 @@ class BlockBound {
   void sweep();
 
  private:
-  double eigenvalue(std::int32_t body) const;
-
   std::unique_ptr<BodyBlocks> blocks_;
   std::vector<double> weight_;  ///< [bodies] d
 };

@@ -31,8 +31,8 @@ class StepProver {
   StepProver(const assembly::LinearSystem& system, double local_damping);
   ~StepProver();
 
-  /// A step that the present weights prove, within a percent of the largest, s: with those of a new prover
-  /// the block bound. Infinite where nothing resists.
+  /// The largest step that the present weights prove, to rounding, s: with those of a new prover the block
+  /// bound. Infinite where nothing resists.
   double bound();
   /// Whether a step is proven, by the present weights or by raising some.
   bool prove(double dt);
@@ -55,6 +55,8 @@ class StepProver {
     std::int32_t body;
     double weight;
   };
+  /// μ where there are dashpots that it matters for, else zero.
+  double viscous(double mu) const;
   void look_at_all(double mu);
   double largest(double mu);
   bool holds(std::int32_t body, double mu);

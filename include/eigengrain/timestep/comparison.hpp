@@ -44,6 +44,12 @@ struct Comparison {
   std::vector<LeftOut> left_out;
 };
 
+/// Whether an estimate does not exceed the truth by more than what that errs by itself: an eigenvalue errs by
+/// about the square of its residual.
+inline bool is_safe(double dt, double truth) {
+  return dt <= truth * (1 + 1e-9);
+}
+
 /// The estimate with this name; null where the scene has none.
 const Estimate* find_estimate(const Comparison& comparison, std::string_view name);
 

@@ -12,7 +12,7 @@
 /// fractions of the critical one, against a run with a far smaller step.
 namespace eigengrain::timestep {
 
-inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 
 struct StepStudyOptions {
   std::vector<double> fractions{0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};  ///< of `limit`
@@ -21,13 +21,17 @@ struct StepStudyOptions {
   std::int64_t samples = 64;  ///< equal parts of `time` at whose ends runs are compared, at most
 };
 
+/// About how many steps of the cycle a study takes: each fraction runs twice, once for its time alone; the
+/// smallest four more times, with 1, 1/2 and 1/4 of its step.
+double steps_of(const StepStudyOptions& options);
+
 /// What is left to compare where trajectories have parted; what does not exist is NaN.
 struct Statistics {
-  double kinetic = unknown;        ///< mean over the samples of ½ v₋·M v₊, J
-  double elastic = unknown;        ///< mean over the samples, J
-  double contact_force = unknown;  ///< mean of the acting contacts at the end, N
-  double contacts = unknown;       ///< acting ones at the end
-  double height = unknown;         ///< of the centre of mass against gravity at the end, m
+  double kinetic = not_there;        ///< mean over the samples of ½ v₋·M v₊, J
+  double elastic = not_there;        ///< mean over the samples, J
+  double contact_force = not_there;  ///< mean of the acting contacts at the end, N
+  double contacts = not_there;       ///< acting ones at the end
+  double height = not_there;         ///< of the centre of mass against gravity at the end, m
 };
 
 /// One run, and how far it is from the reference; NaN where the scene has no such thing, or the run no end.
@@ -35,12 +39,12 @@ struct StepRun {
   double dt = 0;        ///< s
   double fraction = 0;  ///< dt/limit; at most what was asked for, as a whole number of steps fills a sample
   std::int64_t steps = 0;
-  double seconds = 0;                 ///< of the cycle alone, without samples and ledger
-  double trajectory = unknown;        ///< √(mean over samples and balls |x - x_ref|²), m
-  double final_state = unknown;       ///< √(mean over balls |x - x_ref|²) at the end, m
-  double energy = unknown;            ///< largest imbalance of the energy ledger at a sample, J
-  double restitution = unknown;       ///< √(mean (e - e_ref)²) over the impacts that both runs have
-  double mean_restitution = unknown;  ///< of these impacts
+  double seconds = 0;                   ///< of the cycle alone, without samples and ledger
+  double trajectory = not_there;        ///< √(mean over samples and balls |x - x_ref|²), m
+  double final_state = not_there;       ///< √(mean over balls |x - x_ref|²) at the end, m
+  double energy = not_there;            ///< largest imbalance of the energy ledger at a sample, J
+  double restitution = not_there;       ///< √(mean (e - e_ref)²) over the impacts that both runs have
+  double mean_restitution = not_there;  ///< of these impacts
   Statistics statistics;
   std::string trouble;  ///< how the run blew up; empty: it did not
   /// Observed orders ln(error ratio)/ln(dt ratio) against the run with about half the step; none where one of
@@ -52,12 +56,12 @@ struct StepRun {
 
 struct StepReference {
   double dt = 0;               ///< the smallest step, a quarter of that of the first run, s
-  double order = unknown;      ///< observed from runs with dt, 2 dt and 4 dt
+  double order = not_there;    ///< observed from runs with dt, 2 dt and 4 dt
   int extrapolated_order = 0;  ///< of Richardson's extrapolation to dt = 0; 0: the order is not clean, and
                                ///< the run with dt itself is the reference
   double uncertainty = 0;      ///< of the trajectory, in its norm, m
   Statistics statistics;       ///< of the run with dt
-  double mean_restitution = unknown;
+  double mean_restitution = not_there;
 };
 
 /// How far a run departs from one that starts with all balls shifted at random by 1e-10 of the mean radius.
@@ -84,7 +88,7 @@ struct StepStudy {
 /// deforms does not have; restitution is measured in scenes of at most 100 balls that fly freely between
 /// impacts (no clumps, meshes, moving walls, loads, or local damping beside gravity).
 ///
-/// Cost: about 240 time/limit steps with the default fractions, most for those below a fifth of the limit.
+/// Cost: steps_of(options), most of it for fractions below a fifth of the limit.
 /// Throws InputError where masses are scaled, fractions, limit or time are of no use, or the reference itself
 /// blows up.
 StepStudy study_steps(const assembly::State& start, const StepStudyOptions& options);

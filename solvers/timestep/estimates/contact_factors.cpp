@@ -36,12 +36,7 @@ Mat6 displacement_of_end(const Vec3& lever) {
 }  // namespace
 
 ContactFactors::ContactFactors(const assembly::LinearSystem& system)
-    : system_(system), scale_(static_cast<std::size_t>(system.unknowns.bodies()), Vec6::Zero()) {
-  const std::vector<double> scale = system.inverse_sqrt_mass();
-  for (std::int32_t block = 0; block < system.unknowns.blocks(); ++block)
-    scale_[system.unknowns.body(block)].segment<3>(system.unknowns.is_rotation(block) ? 3 : 0) =
-        Eigen::Map<const Vec3>(&scale[std::size_t{3} * block]);
-}
+    : system_(system), scale_(system.inverse_sqrt_mass_of_bodies()) {}
 
 std::array<std::int32_t, 2> ContactFactors::bodies_of(const ContactElement& element) const {
   const auto moving = [&](std::int32_t body) {

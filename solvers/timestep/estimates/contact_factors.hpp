@@ -8,6 +8,10 @@
 
 namespace eigengrain::timestep {
 
+/// What sums of some hundred products of positive semidefinite blocks may err by, relative: bounds are raised
+/// by it.
+inline constexpr double rounding_margin = 1e-12;
+
 /// The factor P_i = D^½ B_i M_i^-½ of each end of a contact [6×6]. Its rows are along n and two directions
 /// across it, for the relative displacement and then for the relative rotation; its columns are the body's
 /// own (u, θ), zero where a component is fixed.

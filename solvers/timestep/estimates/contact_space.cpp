@@ -3,8 +3,7 @@
 #include "eigengrain/base/adjacency.hpp"
 #include "eigengrain/base/largest_eigenvalue.hpp"
 #include "eigengrain/base/parallel.hpp"
-
-#include "timestep/estimates/step_of.hpp"
+#include "eigengrain/cycle/step_of.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,9 @@
 
 namespace eigengrain::timestep {
 namespace {
+
+using cycle::larger;
+using cycle::step_of;
 
 using contact::no_body;
 

@@ -1,5 +1,6 @@
 // PFC3D's estimate in parts, and in other frames.
 #include "eigengrain/assembly/block_diagonal.hpp"
+#include "eigengrain/cycle/bounds.hpp"
 
 #include "timestep/estimates/rules.hpp"
 
@@ -48,15 +49,6 @@ std::vector<OwnStiffness> own_stiffnesses(const LinearSystem& system) {
   return result;
 }
 
-double diagonal_of(const LinearSystem& system, bool rotations) {
-  const std::vector<OwnStiffness> own = own_stiffnesses(system);
-  double largest = 0;
-  for (std::size_t block = 0; block < own.size(); ++block)
-    if (system.unknowns.is_rotation(static_cast<std::int32_t>(block)) == rotations)
-      largest = std::max(largest, own[block].k.diagonal().maxCoeff());
-  return 1 / std::sqrt(largest);
-}
-
 /// 1/√ of the largest diagonal term in a frame whose axes are the columns of `frame`. Sorted by what a block
 /// can reach, so that few are looked at.
 double diagonal_in(const std::vector<OwnStiffness>& sorted, const Mat3& frame) {
@@ -80,11 +72,11 @@ bool has_fixed_components(const Unknowns& unknowns) {
 }  // namespace
 
 double diagonal_of_translations(const LinearSystem& system) {
-  return diagonal_of(system, false);
+  return cycle::elastic_diagonal_estimate(system).translation;
 }
 
 double diagonal_of_rotations(const LinearSystem& system) {
-  return diagonal_of(system, true);
+  return cycle::elastic_diagonal_estimate(system).rotation;
 }
 
 Answer diagonal_of_turned_frames(const Question& question) {

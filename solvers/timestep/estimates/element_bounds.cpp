@@ -2,8 +2,7 @@
 
 #include "eigengrain/base/largest_eigenvalue.hpp"
 #include "eigengrain/base/parallel.hpp"
-
-#include "timestep/estimates/step_of.hpp"
+#include "eigengrain/cycle/step_of.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,9 @@
 
 namespace eigengrain::timestep {
 namespace {
+
+using cycle::larger;
+using cycle::step_of;
 
 using contact::no_body;
 

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
 #include <span>
 #include <utility>
 
@@ -86,14 +85,6 @@ double least_component(double p, std::int64_t n) {
 }
 
 }  // namespace
-
-std::vector<double> gaussian_start(const assembly::LinearSystem& system, std::uint64_t seed) {
-  std::vector<double> start(system.mass.size(), 0.0);
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> gaussian;
-  for (const std::int32_t number : system.unknowns.free_components()) start[number] = gaussian(random);
-  return start;
-}
 
 LanczosRun lanczos(const assembly::LinearSystem& system, int steps, std::vector<double> start,
                    bool with_vector) {

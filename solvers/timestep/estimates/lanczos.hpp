@@ -2,6 +2,8 @@
 
 #include "eigengrain/assembly/linear_system.hpp"
 
+#include "timestep/gaussian_start.hpp"
+
 #include <cstdint>
 #include <vector>
 
@@ -19,9 +21,6 @@ struct LanczosRun {
   std::int64_t components = 0;  ///< n, free components
   std::vector<double> vector;   ///< x [unknowns.size()]; empty if not asked for
 };
-
-/// Gaussian numbers at free components, zeros at others [unknowns.size()].
-std::vector<double> gaussian_start(const assembly::LinearSystem& system, std::uint64_t seed);
 
 /// start        [unknowns.size()], not zero, zero at masked components
 /// with_vector  also x: keeps all vectors, `steps` times 8 bytes an unknown

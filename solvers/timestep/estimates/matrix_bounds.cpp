@@ -1,11 +1,14 @@
 #include "timestep/estimates/matrix_bounds.hpp"
 
-#include "timestep/estimates/step_of.hpp"
+#include "eigengrain/cycle/step_of.hpp"
 
 #include <vector>
 
 namespace eigengrain::timestep {
 namespace {
+
+using cycle::larger;
+using cycle::step_of;
 
 using contact::no_body;
 

@@ -73,7 +73,6 @@ std::vector<std::string> names_of(const std::vector<std::string>& files) {
 Options options_for(const Options& options, const std::string& file) {
   Options of_scene = options;
   of_scene.scene = file;
-  of_scene.output.clear();
   return of_scene;
 }
 

@@ -15,8 +15,6 @@ namespace {
 
 using report::Axis;
 using report::Emphasis;
-using report::Look;
-using report::Mark;
 using report::Page;
 using timestep::Estimate;
 
@@ -97,20 +95,6 @@ void add_scene_table(const ComparedScene& scene, bool with_sources, Page& page) 
 }
 
 }  // namespace
-
-Look look_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::proven:
-      return {Mark::circle, report::colour::blue, true};
-    case Verdict::probable:
-      return {Mark::diamond, report::colour::green, true};
-    case Verdict::safe_here:
-      return {Mark::square, report::colour::ink, false};
-    case Verdict::unsafe:
-      break;
-  }
-  return {Mark::triangle, report::colour::vermilion, true};
-}
 
 std::string ratio_text(double ratio) {
   if (!std::isfinite(ratio)) return "∞";

@@ -1,16 +1,13 @@
 #pragma once
 
 #include "compared_scene.hpp"
-#include "report/chart.hpp"
 #include "report/page.hpp"
-#include "standing.hpp"
+#include "verdict.hpp"
 
 #include <string>
 
 /// One scene on the page of `compare timesteps`, and what all sections of it share.
 namespace eigengrain::app {
-
-report::Look look_of(Verdict verdict);
 
 /// Three digits behind the point; just above 1 the order of what is too much.
 std::string ratio_text(double ratio);

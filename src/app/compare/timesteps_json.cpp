@@ -1,4 +1,5 @@
 #include "../comparison_json.hpp"
+#include "run_lengths.hpp"
 #include "standing.hpp"
 #include "timesteps_report.hpp"
 

@@ -1,6 +1,7 @@
 #include "../text.hpp"
 #include "standing.hpp"
 #include "timesteps_report.hpp"
+#include "verdict.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace eigengrain::timestep {
+namespace eigengrain::cycle {
 
 /// 2/√λ, s: infinite where nothing resists, and 0, which proves nothing, of what is not a number (an overflow
 /// in the scene).
@@ -17,8 +17,4 @@ inline double larger(double a, double b) {
   return std::isnan(b) || b > a ? b : a;
 }
 
-/// What sums of some hundred products of positive semidefinite blocks may err by, relative: bounds are raised
-/// by it.
-inline constexpr double rounding_margin = 1e-12;
-
-}  // namespace eigengrain::timestep
+}  // namespace eigengrain::cycle
