@@ -204,7 +204,8 @@ void Cycle::step() {
     slack_ -= dt * move(duration, dt, cell);
     growth.apply();
     // Looked at only where the fastest body could have left its room; beyond the rounding of the sum.
-    if (looks_always || !(slack_ > 1e-6 * half_skin)) slack_ = least_slack(half_skin - state_.list.growth, cell);
+    if (looks_always || !(slack_ > 1e-6 * half_skin))
+      slack_ = least_slack(half_skin - state_.list.growth, cell);
   }
   bool expired = false;
   bool left_rooms = false;

@@ -78,7 +78,8 @@ void scatter(const Real* numbers, const std::array<double*, lanes>& rows, int us
   } else {
     for (std::size_t k = 0; k < count; k += row) {
       const std::size_t from = std::min(k, count - row);
-      std::array<Row, lanes> r{numbers[from].v, numbers[from + 1].v, numbers[from + 2].v, numbers[from + 3].v};
+      std::array<Row, lanes> r{numbers[from].v, numbers[from + 1].v, numbers[from + 2].v,
+                               numbers[from + 3].v};
       transpose(r[0], r[1], r[2], r[3]);
       for (int lane = 0; lane < used; ++lane) store(rows[lane] + from, r[lane]);
     }
@@ -93,13 +94,15 @@ inline std::array<Row, lanes> rows_of(const Vector& v) {
 }
 
 /// The contacts of a chunk of bodies that bear one law.
-template <class Law>
+template <class Law, bool turns>
 class BallSums {
  public:
   BallSums(BallContacts<Law>& group, const Work& work) : group_(group), work_(work), law_(group.law) {}
 
   void run() {
-    constexpr int block = 256;
+    // What chosen contacts ask for is on its way into the first cache when they are evaluated, and has room
+    // there.
+    constexpr int block = 128;
     std::array<std::int32_t, block + lanes> chosen;
     for (std::int64_t first = work_.begin; first < work_.end; first += block) {
       const std::int64_t end = std::min(first + block, work_.end);
@@ -140,8 +143,14 @@ class BallSums {
       z += shift.z();
     }
     const double reach = a.radius + b.radius;
+    // Without a branch on what is as good as random.
     const bool may = (x * x + y * y + z * z <= margin * reach * reach) | (work_.active[c] != 0);
-    if (!may && work_.slot[c] != own_chunk) work_.foreign[work_.slot[c]] = {};
+    const std::int32_t slot = work_.slot[c];
+    if (!may & (slot != own_chunk)) work_.foreign[slot] = {};
+    if constexpr (moves) {
+      __builtin_prefetch(&work_.motions[p.b]);
+      __builtin_prefetch(&group_.states[static_cast<std::size_t>(c)], 1);
+    }
     return may;
   }
 
@@ -188,8 +197,10 @@ class BallSums {
     gather<8>(rows_a, a.data());
     gather<8>(rows_b, b.data());
     const Real duration = work_.duration;
-    const contact::SideMotionIn<Real> side_a{duration * Vector(a[0], a[1], a[2]), duration * Vector(a[4], a[5], a[6])};
-    contact::SideMotionIn<Real> side_b{duration * Vector(b[0], b[1], b[2]), duration * Vector(b[4], b[5], b[6])};
+    const contact::SideMotionIn<Real> side_a{duration * Vector(a[0], a[1], a[2]),
+                                             duration * Vector(a[4], a[5], a[6])};
+    contact::SideMotionIn<Real> side_b{duration * Vector(b[0], b[1], b[2]),
+                                       duration * Vector(b[4], b[5], b[6])};
     if (work_.cell_step != nullptr)
       for (int lane = 0; lane < lanes; ++lane) {
         const model::Image& image = pair(chosen[lane]).image;
@@ -222,7 +233,8 @@ class BallSums {
         rows[lane] = reinterpret_cast<double*>(&group_.states[static_cast<std::size_t>(chosen[lane])]);
     Packed old;
     Packed next;
-    if constexpr (numbers > 0) gather<numbers>({rows[0], rows[1], rows[2], rows[3]}, reinterpret_cast<Real*>(&old));
+    if constexpr (numbers > 0)
+      gather<numbers>({rows[0], rows[1], rows[2], rows[3]}, reinterpret_cast<Real*>(&old));
     const MaskOf<Real> acts = law_.acts(motion, old);
     force = law_.evaluate(motion, old, next);
     const Vector nothing = Vector::Zero();
@@ -240,25 +252,21 @@ class BallSums {
 
   void add(const std::int32_t* chosen, int used, const contact::EndForcesIn<Real>& ends) {
     const std::array<Row, lanes> force = rows_of(ends.force_b);
-    std::array<Row, lanes> moment_a{};
-    std::array<Row, lanes> moment_b{};
-    if (work_.turns) {
-      moment_a = rows_of(ends.moment_a);
-      moment_b = rows_of(ends.moment_b);
-    }
+    const std::array<Row, lanes> moment_a = rows_of(ends.moment_a);
+    const std::array<Row, lanes> moment_b = rows_of(ends.moment_b);
     for (int lane = 0; lane < used; ++lane) {
       const contact::Pair& p = pair(chosen[lane]);
       BodySum& a = work_.sums[p.a - work_.first_body];
       add_to(a.force, -force[lane]);
-      if (work_.turns) add_to(a.moment, moment_a[lane]);
+      if constexpr (turns) add_to(a.moment, moment_a[lane]);
       const std::int32_t slot = work_.slot[chosen[lane]];
       if (slot == own_chunk) {
         BodySum& b = work_.sums[p.b - work_.first_body];
         add_to(b.force, force[lane]);
-        if (work_.turns) add_to(b.moment, moment_b[lane]);
+        if constexpr (turns) add_to(b.moment, moment_b[lane]);
       } else {
         store(work_.foreign[slot].force, force[lane]);
-        store(work_.foreign[slot].moment, moment_b[lane]);
+        if constexpr (turns) store(work_.foreign[slot].moment, moment_b[lane]);
       }
     }
   }
@@ -273,7 +281,10 @@ class BallSums {
 
 template <class Law>
 EIGENGRAIN_FLAT void advance_balls(BallContacts<Law>& group, const Work& work) {
-  BallSums<Law>(group, work).run();
+  if (work.turns)
+    BallSums<Law, true>(group, work).run();
+  else
+    BallSums<Law, false>(group, work).run();
 }
 
 template <class... Laws>

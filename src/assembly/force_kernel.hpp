@@ -39,17 +39,17 @@ inline constexpr std::int32_t own_chunk = -1;
 
 /// The contacts of one group in one chunk of bodies, and the step they are evaluated for.
 struct Work {
-  const BodyPlace* places = nullptr;    ///< [bodies]
-  const BodyMotion* motions = nullptr;  ///< [bodies]; null where no contact has a history
+  const BodyPlace* places = nullptr;          ///< [bodies]
+  const BodyMotion* motions = nullptr;        ///< [bodies]; null where no contact has a history
   const model::PeriodicCell* cell = nullptr;  ///< null where nothing repeats
   const Mat3* cell_step = nullptr;            ///< change of its edges in the step, m; null: the cell rests
   double duration = 0;                        ///< from velocities to increments, s
   double per_second = 0;                      ///< from increments to velocities, 1/s
   double lever_cut = 0;
-  bool turns = false;           ///< whether moments are wanted
-  std::int64_t begin = 0;       ///< contacts
+  bool turns = false;      ///< whether moments are wanted
+  std::int64_t begin = 0;  ///< contacts
   std::int64_t end = 0;
-  std::int32_t first_body = 0;  ///< of the chunk
+  std::int32_t first_body = 0;         ///< of the chunk
   const std::int32_t* slot = nullptr;  ///< [contacts] into `foreign`, or own_chunk
   std::uint8_t* active = nullptr;      ///< [contacts] whether it acted in the step before
   BodySum* sums = nullptr;             ///< [bodies of the chunk] added to

@@ -63,8 +63,9 @@ std::int64_t chunk_of_bodies(std::int64_t bodies) {
 
 /// Whether a kernel evaluates the contacts of a group (force_kernel.hpp).
 template <class Group>
-inline constexpr bool in_packs = std::is_same_v<typename Group::KinematicsType, contact::BallBall> &&
-    contact::takes_packs<typename Group::LawType> && !contact::BondLaw<typename Group::LawType>;
+inline constexpr bool in_packs = std::is_same_v<typename Group::KinematicsType, contact::BallBall>&&
+                                     contact::takes_packs<typename Group::LawType> &&
+                                 !contact::BondLaw<typename Group::LawType>;
 
 /// [contacts] whether their state is another than that of surfaces which never touched.
 template <class Group>
@@ -195,6 +196,9 @@ void ContactForceSum::sum_group(GroupPlan& plan, Group& group, const Model& mode
                             .sums = chunk.sums,
                             .foreign = foreign_.data()};
     std::get<kernel::Advance<typename Group::LawType>>(kernel::best_force_kernel())(group, work);
+  } else if constexpr (commit && !std::is_same_v<typename Group::KinematicsType, contact::BallFacet>) {
+    // In one flat piece: the cycle spends its time here.
+    [&]() EIGENGRAIN_FLAT { sum_one_by_one<commit>(plan, group, model.bodies, placement, trial, chunk); }();
   } else {
     sum_one_by_one<commit>(plan, group, model.bodies, placement, trial, chunk);
   }
@@ -251,17 +255,18 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   sum.moment.resize(turns_ ? bodies : 0);
   const contact::Placement placement = placement_in(model, trial);
   if constexpr (commit) pack_bodies(model, trial);
-  for_chunks(std::ssize(sum.force), chunk_size_, [&](std::int64_t begin, std::int64_t end, std::int64_t index) {
-    const Chunk chunk{index, begin, zeroed_sums(chunk_size_)};
-    auto plan = plans_.begin();
-    model.contacts.for_each_group(
-        [&](auto& group) { sum_group<commit>(*plan++, group, model, placement, trial, chunk); });
-    for (std::int64_t i = begin; i < end; ++i) {
-      const kernel::BodySum& of_body = chunk.sums[i - begin];
-      sum.force[static_cast<std::size_t>(i)] = Eigen::Map<const Vec3>(of_body.force);
-      if (turns_) sum.moment[static_cast<std::size_t>(i)] = Eigen::Map<const Vec3>(of_body.moment);
-    }
-  });
+  for_chunks(std::ssize(sum.force), chunk_size_,
+             [&](std::int64_t begin, std::int64_t end, std::int64_t index) {
+               const Chunk chunk{index, begin, zeroed_sums(chunk_size_)};
+               auto plan = plans_.begin();
+               model.contacts.for_each_group(
+                   [&](auto& group) { sum_group<commit>(*plan++, group, model, placement, trial, chunk); });
+               for (std::int64_t i = begin; i < end; ++i) {
+                 const kernel::BodySum& of_body = chunk.sums[i - begin];
+                 sum.force[static_cast<std::size_t>(i)] = Eigen::Map<const Vec3>(of_body.force);
+                 if (turns_) sum.moment[static_cast<std::size_t>(i)] = Eigen::Map<const Vec3>(of_body.moment);
+               }
+             });
   add_foreign(sum);
   if constexpr (commit) {
     broken_.clear();

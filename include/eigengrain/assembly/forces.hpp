@@ -104,8 +104,8 @@ class ContactForceSum {
   void evaluate(const Model& model, const Trial& trial, BodyForces& sum);
   /// The same, and the contacts remember: the trial displacement becomes the committed state. What they
   /// dissipate on the way is added to `dissipated` if it is given; if not, it is not computed. Contacts of
-  /// balls are evaluated several at a time (src/assembly/force_kernel.hpp), so that forces agree with those of
-  /// evaluate() to rounding. Between two calls nobody else may change the states of contacts.
+  /// balls are evaluated several at a time (src/assembly/force_kernel.hpp), so that forces agree with those
+  /// of evaluate() to rounding. Between two calls nobody else may change the states of contacts.
   void advance(Model& model, const Trial& trial, BodyForces& sum, contact::Dissipation* dissipated = nullptr);
 
   /// Bonds that broke in the last `advance`, in the order of the contacts; steps, times and
@@ -115,9 +115,9 @@ class ContactForceSum {
  private:
   /// A group's contacts by chunk of their first body, and where each puts its force on a body elsewhere.
   struct GroupPlan {
-    std::vector<std::int64_t> starts;   ///< [chunks + 1]
-    std::vector<std::int32_t> slot;     ///< [contacts] into foreign_, or own_chunk; empty for walls
-    std::vector<std::uint8_t> active;   ///< [contacts] whether it may act though apart; empty for scalar loops
+    std::vector<std::int64_t> starts;  ///< [chunks + 1]
+    std::vector<std::int32_t> slot;    ///< [contacts] into foreign_, or own_chunk; empty for walls
+    std::vector<std::uint8_t> active;  ///< [contacts] whether it may act though apart; empty for scalar loops
     std::vector<std::vector<BondBreak>> broken;  ///< [chunks] in the last advance; empty where nothing breaks
   };
   /// The bodies whose sums are at hand.

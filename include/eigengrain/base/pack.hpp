@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
-/// Several numbers that are computed with at once, one in each lane of a vector register. Code that is written
-/// for a type `Real` runs with double, and with Pack<lanes> for as many contacts as there are lanes. Where
-/// lanes differ in what they do, both is computed and select() takes one of the two.
+/// Several numbers that are computed with at once, one in each lane of a vector register. Code that is
+/// written for a type `Real` runs with double, and with Pack<lanes> for as many contacts as there are lanes.
+/// Where lanes differ in what they do, both is computed and select() takes one of the two.
 namespace eigengrain {
 namespace detail {
 
@@ -110,7 +110,15 @@ struct Eigen::NumTraits<eigengrain::Pack<lanes>> : Eigen::GenericNumTraits<eigen
   using NonInteger = Real;
   using Nested = Real;
   using Literal = double;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
 };
 template <int lanes, class Operation>
 struct Eigen::ScalarBinaryOpTraits<double, eigengrain::Pack<lanes>, Operation> {

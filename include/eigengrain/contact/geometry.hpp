@@ -27,8 +27,8 @@ struct GeometryOf {
 };
 using ContactGeometry = GeometryOf<double>;
 
-/// Two balls whose centres are `branch` = x_b - x_a apart: n = branch/d, U = r_a + r_b - d, x_C = x_a + (r_a -
-/// U/2) n. x_b is the centre of the image that touches. Centres must differ.
+/// Two balls whose centres are `branch` = x_b - x_a apart: n = branch/d, U = r_a + r_b - d, x_C = x_a + (r_a
+/// - U/2) n. x_b is the centre of the image that touches. Centres must differ.
 template <class Real>
 GeometryOf<Real> balls_apart(const Vec3Of<Real>& branch, const Real& r_a, const Real& r_b, double cut) {
   using std::sqrt;

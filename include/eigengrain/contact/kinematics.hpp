@@ -237,12 +237,11 @@ MotionOf<Law> motion_for(const Law& law, const Placement& placement, const Pair&
   if constexpr (in_total_form<Law>)
     return pose_of(placement, pair, geometry);
   else
-    return law.mid_step()
-               ? mid_step_motion(geometry,
-                                 Kinematics::geometry_before(placement, pair, 0.5 * a.translation,
-                                                             0.5 * b.translation),
-                                 a, b)
-               : contact_motion(geometry, a, b);
+    return law.mid_step() ? mid_step_motion(geometry,
+                                            Kinematics::geometry_before(placement, pair, 0.5 * a.translation,
+                                                                        0.5 * b.translation),
+                                            a, b)
+                          : contact_motion(geometry, a, b);
 }
 
 /// m_1 m_2/(m_1 + m_2) of the sides, at a wall the ball's mass, kg.

@@ -27,12 +27,13 @@ template <class Real>
 struct MotionIn {
   using Vector = Vec3Of<Real>;
 
-  Vector normal = Vector::Zero();        ///< n now, unit
-  Real overlap = 0;                      ///< U now, m; positive when the surfaces interpenetrate
-  Vector displacement = Vector::Zero();  ///< increment of the relative displacement δ since the committed state, m
-  Vector rotation = Vector::Zero();      ///< increment of the relative rotation φ, rad
-  Real spin = 0;                         ///< increment of the mean rotation ½(θ_1 + θ_2) about n, rad
-  Real reduced_radius = 0;               ///< R* of the sides, 1/R* = Σ 1/R, m; a wall is flat
+  Vector normal = Vector::Zero();  ///< n now, unit
+  Real overlap = 0;                ///< U now, m; positive when the surfaces interpenetrate
+  Vector displacement =
+      Vector::Zero();  ///< increment of the relative displacement δ since the committed state, m
+  Vector rotation = Vector::Zero();  ///< increment of the relative rotation φ, rad
+  Real spin = 0;                     ///< increment of the mean rotation ½(θ_1 + θ_2) about n, rad
+  Real reduced_radius = 0;           ///< R* of the sides, 1/R* = Σ 1/R, m; a wall is flat
   /// For laws that ask for the rate (asks_rate) alone.
   Vector velocity = Vector::Zero();  ///< of δ, m/s; zero where nothing moves in time, as in Newton's method
   Real reduced_mass = 0;             ///< m_1 m_2/(m_1 + m_2), at a wall the ball's, kg
@@ -40,8 +41,8 @@ struct MotionIn {
 using ContactMotion = MotionIn<double>;
 
 /// Whether a law is written for several contacts at once: its acts() and evaluate() take MotionIn<Real> and
-/// StateIn<Real> for any Real, State being StateIn<double>. What evaluate() gives for lanes that do not act is
-/// left out by the caller. Other laws are asked for one contact after the other.
+/// StateIn<Real> for any Real, State being StateIn<double>. What evaluate() gives for lanes that do not act
+/// is left out by the caller. Other laws are asked for one contact after the other.
 template <class L>
 inline constexpr bool takes_packs = requires {
   typename L::template StateIn<double>;

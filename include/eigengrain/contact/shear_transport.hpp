@@ -25,9 +25,9 @@ Vec3Of<Real> rotate_onto(const Same<Vec3Of<Real>>& v, const Same<Vec3Of<Real>>& 
 }
 
 /// Cosine and sine of an angle by a fraction N/D for the tangent of its half (the 7th convergent of Lambert's
-/// continued fraction), without a branch: cos = (D² - N²)/(D² + N²), sin = 2ND/(D² + N²). Their squares add up
-/// to one for any angle, so that no length changes; the angle is right to rounding up to a radian, and to 1e-8
-/// up to three: steps turn by far less.
+/// continued fraction), without a branch: cos = (D² - N²)/(D² + N²), sin = 2ND/(D² + N²). Their squares add
+/// up to one for any angle, so that no length changes; the angle is right to rounding up to a radian, and to
+/// 1e-8 up to three: steps turn by far less.
 template <class Real>
 struct Turn {
   explicit Turn(const Real& angle) {

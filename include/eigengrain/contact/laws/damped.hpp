@@ -58,7 +58,8 @@ class Damped : public Base {
  public:
   template <class Real>
   struct StateIn : Base::template StateIn<Real> {
-    Vec3Of<Real> viscous = Vec3Of<Real>::Zero();  ///< D_n + D_s of the step that led here, N, on the second side
+    Vec3Of<Real> viscous =
+        Vec3Of<Real>::Zero();  ///< D_n + D_s of the step that led here, N, on the second side
   };
   using State = StateIn<double>;
   static constexpr auto state_fields =

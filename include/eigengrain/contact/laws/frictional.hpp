@@ -91,8 +91,9 @@ class Frictional {
 
   template <class Real>
   struct StateIn {
-    Vec3Of<Real> shear = Vec3Of<Real>::Zero();   ///< F_s, N, of the first side on the second
-    Vec3Of<Real> normal = Vec3Of<Real>::Zero();  ///< n at the committed state; zero: the contact has not formed
+    Vec3Of<Real> shear = Vec3Of<Real>::Zero();  ///< F_s, N, of the first side on the second
+    Vec3Of<Real> normal =
+        Vec3Of<Real>::Zero();  ///< n at the committed state; zero: the contact has not formed
     [[no_unique_address]] typename Springs::template Memory<Real> memory{};
 
     MaskOf<Real> formed() const { return (normal.x() != 0.0) | (normal.y() != 0.0) | (normal.z() != 0.0); }

@@ -40,7 +40,8 @@ class LinearFrictionless {
   }
 
   template <class Real>
-  ForceIn<Real> evaluate(const MotionIn<Real>& motion, const StateIn<Real>& old, StateIn<Real>& /*next*/) const {
+  ForceIn<Real> evaluate(const MotionIn<Real>& motion, const StateIn<Real>& old,
+                         StateIn<Real>& /*next*/) const {
     if (none(acts(motion, old))) return {};
     return {.force = kn_ * motion.overlap * motion.normal};
   }

@@ -132,10 +132,10 @@ class Rolling : public Base {
   Vec3Of<Real> trial_moment(const MotionIn<Real>& motion, const StateIn<Real>& old) const {
     using Vector = Vec3Of<Real>;
     if (spring_.kr <= 0) return Vector::Zero();
-    return select<Real>(old.formed(),
-                        carry_vector<Real>(old.moment, old.normal, motion.normal, motion.spin) -
-                            spring_.kr * motion.rotation,
-                        Vector::Zero());
+    return select<Real>(
+        old.formed(),
+        carry_vector<Real>(old.moment, old.normal, motion.normal, motion.spin) - spring_.kr * motion.rotation,
+        Vector::Zero());
   }
   template <class Real>
   Real limit_of(const MotionIn<Real>& motion, const Response<Real>& base) const {
