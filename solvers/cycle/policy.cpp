@@ -63,7 +63,8 @@ TimestepPolicy policy_of(const model::Scene& settings) {
           tracks || choice.every > 0 ? between_proofs : between_bounds(settings, varies);
       return {.dt =
                   [choice, varies](const assembly::State& state) {
-                    const auto guard = state.guard ? state.guard : StepTracker().prove(state);
+                    if (state.guard) return choice.safety * state.guard->dt;
+                    const auto guard = StepTracker().prove(state);
                     return choice.safety * (guard ? guard->dt : proven_step(state, varies));
                   },
               .every = every,

@@ -44,6 +44,8 @@ constexpr std::int64_t shortest_pause = 4;
 constexpr std::int64_t longest_pause = 16;
 /// Where the block bound has risen by more than this, so that a proof from scratch should give more.
 constexpr double worth_a_new_proof = 1.02;
+/// What holds exactly must not fail by rounding when it is proven once more.
+constexpr double beyond_rounding = 1e-9;
 /// A proof from scratch is content when steps larger by this can no more be proven.
 constexpr double content = 1.015;
 
@@ -119,7 +121,7 @@ std::vector<std::int32_t> bodies_near_the_end(const State& state) {
 void prove_from_scratch(StepProver& prover, StepGuard& guard) {
   prover.set_weights(std::vector<double>(prover.weights().size(), 1.0));
   const double bound = prover.bound();
-  guard.dt = prover.sharpen(std::numeric_limits<double>::infinity(), content);
+  guard.dt = (1 - beyond_rounding) * prover.sharpen(std::numeric_limits<double>::infinity(), content);
   guard.gain = std::isfinite(guard.dt) ? guard.dt / bound : 1.0;
 }
 
