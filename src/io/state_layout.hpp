@@ -121,7 +121,6 @@ void for_each_guard_number(Guard& all, const Visit& visit) {
   visit("dt", all.dt);
   visit("wall_way", all.wall_way);
   visit("step", all.step);
-  visit("list", all.list);
   visit("gain", all.gain);
   visit("pause", all.pause);
   visit("last_pause", all.last_pause);

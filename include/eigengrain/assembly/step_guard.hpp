@@ -15,8 +15,7 @@ struct StepGuard {
   std::vector<Vec3> position;  ///< [bodies] where they were, m
   std::vector<double> room;    ///< [bodies] m
   double wall_way = 0;         ///< NeighbourList::wall_way up to which it holds, m
-  std::int64_t step = 0;       ///< when rooms and proof of all bodies were last made
-  std::int64_t list = 0;       ///< NeighbourList::rebuilds then
+  std::int64_t step = 0;       ///< when it was made
   // What the next proof begins with (cycle/tracked_step.hpp).
   std::vector<double> weight;  ///< [bodies] d
   double gain = 1;             ///< step over the block bound when last proven from scratch
