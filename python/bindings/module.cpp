@@ -58,4 +58,5 @@ PYBIND11_MODULE(_core, module) {
   python::add_states(module);
   python::add_systems(module);
   python::add_questions(module);
+  python::add_spectra(module);
 }

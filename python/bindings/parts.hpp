@@ -8,6 +8,7 @@ namespace eigengrain::python {
 void add_states(pybind11::module_& module);
 void add_systems(pybind11::module_& module);
 void add_questions(pybind11::module_& module);
+void add_spectra(pybind11::module_& module);
 
 /// Raises KeyboardInterrupt where the user has asked for an end. Takes the GIL.
 void look_for_interrupt();

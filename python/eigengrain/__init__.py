@@ -14,11 +14,12 @@ from ._core import __version__, schema_markdown, set_petsc_options, set_threads,
 from .errors import InputError, SolverError
 from .load import load
 from .results import Balance, Energies, Estimate, Measure, Relaxation, Timestep, Truth
+from .spectrum import Density, Moduli, Modes, Rigidity, Springs
 from .state import Bodies, Contacts, State
 from .system import Elements, StiffnessOperator, System
 
 __all__ = [
-    "Balance", "Bodies", "Contacts", "Elements", "Energies", "Estimate", "InputError", "Measure", "Relaxation",
-    "SolverError", "State", "StiffnessOperator", "System", "Timestep", "Truth", "load", "schema_markdown",
+    "Balance", "Bodies", "Contacts", "Density", "Elements", "Energies", "Estimate", "InputError", "Measure", "Moduli",
+    "Modes", "Relaxation", "Rigidity", "SolverError", "Springs", "State", "StiffnessOperator", "System", "Timestep", "Truth", "load", "schema_markdown",
     "set_petsc_options", "set_threads", "threads", "__version__",
 ]

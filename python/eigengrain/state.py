@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .errors import InputError, SolverError
 from .results import Balance, Energies, Floats, Measure, Relaxation, Timestep
+from .spectrum import Moduli, Rigidity
 
 if TYPE_CHECKING:
     from .load import Settings
@@ -374,6 +375,20 @@ class State:
         """
         from .system import System
         return System(_core.System(self._handle, contacts == "listed"))
+
+    def rigidity(self, springs: Literal["all", "sticking", "normal"] = "all", *, with_rattlers: bool = True,
+                 shapes: bool = False) -> Rigidity:
+        """Floppy modes and states of self-stress, by two rank-revealing decompositions that know nothing of each other.
+
+        springs: all that contacts have; "sticking": contacts that slide have no shear; "normal": the frictionless count.
+        with_rattlers: else balls with too few contacts are left out, one after the other.
+        shapes: also the motions and the stresses; takes floppy × unknowns numbers.
+        """
+        return Rigidity._from(_core.rigidity(self._handle, springs, with_rattlers, shapes))
+
+    def moduli(self) -> Moduli:
+        """The elastic stiffness tensor of an assembly in a cell that repeats along all axes, by linear response."""
+        return Moduli._from(_core.moduli(self._handle))
 
     # keeping it
 

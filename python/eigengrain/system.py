@@ -1,6 +1,9 @@
 """K, M, B and D of a state: as sparse matrices, as operators, as petsc4py matrices."""
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -10,6 +13,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from . import _core
 from .results import Floats
+from .spectrum import Density, Modes
 
 Integers = NDArray[np.int32]
 
@@ -134,6 +138,42 @@ class System:
                                              matrix.data.astype(PETSc.ScalarType)))
         result.assemble()
         return result
+
+    # the spectrum
+
+    def highest_modes(self, count: int = 20) -> Modes:
+        """The modes of the largest eigenvalues, the largest first. Raises SolverError where they do not converge."""
+        return Modes(**_core.highest_modes(self._system, count), _system=self)
+
+    def lowest_modes(self, count: int = 20) -> Modes:
+        """The modes of the least eigenvalues that something resists, the least first.
+
+        Rigid motions, rattlers and mechanisms are left out: eigenvalues below 1e-10 of the largest. Takes a sparse
+        factor of K. Raises SolverError where they do not converge or memory does not suffice.
+        """
+        return Modes(**_core.lowest_modes(self._system, count), _system=self)
+
+    def all_modes(self, shapes: bool = False) -> Modes:
+        """Every mode, the least first, by a dense matrix (LAPACK); up to 20,000 unknowns."""
+        return Modes(**_core.all_modes(self._system, shapes), _system=self)
+
+    def density_of_states(self, *, bins: int = 50, moments: int = 512, vectors: int = 8, seed: int = 1) -> Density:
+        """The density of states by the kernel polynomial method, for any size.
+
+        bins: of equal width in angular frequency.
+        moments: of Chebyshev polynomials; a mode is smeared over π/(2 moments) of the whole range.
+        vectors: random ones; errors fall with the root of their number. Cost: moments/2 products with K each.
+        """
+        return Density(**_core.density_of_states(self._system, moments, vectors, bins, seed))
+
+    # files
+
+    def export(self, folder: str | os.PathLike[str], formats: Sequence[str] = ("h5", "csv")) -> list[Path]:
+        """Writes K, M, B, D, contacts, bodies and the map of the unknowns into a folder; what `export` does.
+
+        formats: "mtx" (MatrixMarket), "petsc" (binary), "h5" (HDF5), "csv" (tables).
+        """
+        return [Path(file) for file in _core.export_matrices(self._system, os.fspath(folder), list(formats))]
 
     @property
     def elements(self) -> Elements:

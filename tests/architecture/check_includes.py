@@ -30,7 +30,7 @@ LAYERS = [
 
 # Where a folder may live; its headers are written "eigengrain/<folder>/..." if they are public.
 ROOTS = ["include/eigengrain", "src", "solvers"]
-# The Python package is one folder, which uses all of them.
+# python/ stands on top of everything: only its use of PETSc is looked at.
 
 # The headers of PETSc and SLEPc, and the only places that may include them. Public headers may not: who uses
 # the library should not need PETSc's headers.
