@@ -38,7 +38,7 @@ def packing(overlap):
 
 figure, axes = plt.subplots(figsize=(6.5, 4.2), layout="constrained", dpi=150)
 lowest = {}
-for overlap, colour in [(3e-2, eigengrain.plot.BLUE), (1e-3, eigengrain.plot.VERMILION)]:
+for overlap, colour in [(1e-2, eigengrain.plot.BLUE), (1e-3, eigengrain.plot.VERMILION)]:
     state = packing(overlap)
     pressure = -np.trace(state.measure().stress) / 3  # stresses are positive in tension
     # Modes of balls that are held: rattlers have no frequency.
@@ -54,8 +54,8 @@ for overlap, colour in [(3e-2, eigengrain.plot.BLUE), (1e-3, eigengrain.plot.VER
           f"participation {modes.participation[0]:.3f}")
 figure.savefig(FOLDER / "density_of_states.png")
 
-# The slowest mode of the packing that is nearest to jamming: a swirl of many balls, and no plane wave.
+# The slowest mode of the packing that is nearest to jamming is no plane wave.
 axes = eigengrain.plot.mode_shape(state, modes, 0)
 axes.figure.savefig(FOLDER / "modes.png")
 
-assert lowest[1e-3] < lowest[3e-2], "rigidity is lost as the pressure falls"
+assert lowest[1e-3] < lowest[1e-2], "rigidity is lost as the pressure falls"

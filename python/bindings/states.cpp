@@ -204,10 +204,10 @@ struct ContactColumns {
   explicit ContactColumns(const assembly::Model& model) {
     const std::vector<measures::ActingContact> contacts = measures::acting_contacts(model);
     for (const measures::ActingContact& c : contacts) {
-      const bool wall = c.b == measures::ActingContact::wall;
+      const bool at_wall = c.b == measures::ActingContact::wall;
       a.push_back(c.ball_a);
-      b.push_back(wall ? -1 : c.ball_b);
-      this->wall.push_back(wall ? c.ball_b : -1);
+      b.push_back(at_wall ? -1 : c.ball_b);
+      wall.push_back(at_wall ? c.ball_b : -1);
       image.push_back(c.image);
       rule.push_back(c.rule);
       normal.push_back(c.normal);

@@ -9,6 +9,8 @@ from typing import Any, Literal, Optional
 
 import matplotlib
 import matplotlib.collections
+import matplotlib.colors
+import matplotlib.ticker
 import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,7 +36,7 @@ def force_chains(state: State, axes: Axes = None, *, plane: Plane = "xz", slice:
         radii in the middle, all of a scene that is thinner.
     balls: their outlines too.
     """
-    axes = _axes(axes)
+    axes = _axes(axes, (6, 5))
     bodies, contacts = state.bodies, state.contacts
     first, second, depth = _plane(plane)
     inside, between = _layer(bodies.position[:, depth], bodies.radius, slice)
@@ -64,7 +66,7 @@ def mode_shape(state: State, modes: Modes, k: int, axes: Axes = None, *, plane: 
 
     longest: length of the longest arrow that is shown, in mean radii. plane, slice: as of `force_chains`.
     """
-    axes = _axes(axes)
+    axes = _axes(axes, (6, 5))
     bodies = state.bodies
     first, second, depth = _plane(plane)
     inside, _ = _layer(bodies.position[:, depth], bodies.radius, slice)
@@ -77,8 +79,8 @@ def mode_shape(state: State, modes: Modes, k: int, axes: Axes = None, *, plane: 
     scale = longest * bodies.radius.mean() / size if size > 0 else 0.0
     order = np.argsort(share)
     arrows = axes.quiver(1e3 * x[order, first], 1e3 * x[order, second], *(1e3 * scale * u[order]).T,
-                         share[order] * len(bodies), cmap=COLOURS + "_r", angles="xy", scale_units="xy", scale=1,
-                         width=0.004, zorder=3)
+                         share[order] * len(bodies), cmap=COLOURS + "_r", norm=matplotlib.colors.PowerNorm(0.4), angles="xy",
+                         scale_units="xy", scale=1, width=0.005, zorder=3)
     axes.figure.colorbar(arrows, ax=axes, label="energy, of the mean of all balls", shrink=0.8)
     axes.set_title(f"$\\omega$ = {modes.frequencies[k]:.4g} rad/s, participation {modes.participation[k]:.3f}, "
                    f"{100 * modes.translation[k]:.0f}% translation", fontsize="medium")
@@ -135,6 +137,10 @@ def timesteps(found: Timestep, axes: Axes = None) -> Axes:
     axes.axvline(1, color=GREY, linewidth=1)
     axes.set_yticks(range(len(shown)), [estimate.name for estimate in shown], fontsize="small")
     axes.grid(axis="x", color="#dddddd", linewidth=0.6)
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(0.2, 0.5, 0.7, 1.0)))
+    axes.xaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
+    axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     axes.set_xlabel("estimate / true critical timestep")
     axes.legend(frameon=False, fontsize="small", loc="lower right")
     return axes

@@ -130,7 +130,7 @@ class System:
         try:
             from petsc4py import PETSc
         except ImportError as missing:
-            raise ImportError("petsc4py is not installed (Debian: python3-petsc4py-real)") from missing
+            raise ImportError("petsc4py is not installed (Debian: python3-petsc4py)") from missing
         matrix = getattr(self, name).tobsr((3, 3))
         index = PETSc.IntType
         result = PETSc.Mat().createBAIJ(size=matrix.shape, bsize=3, comm=PETSc.COMM_SELF,

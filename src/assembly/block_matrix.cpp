@@ -121,8 +121,10 @@ BlockMatrix elasticity_blocks(const LinearSystem& system) {
   }
   for (std::size_t e = 0; e < system.elements.size(); ++e) {
     const ContactElement& element = system.elements[e];
-    block_at(matrix, 2 * e) = element.stiffness.translation(element.normal);
-    block_at(matrix, 2 * e + 1) = element.stiffness.rotation(element.normal);
+    const Mat3 along = element.stiffness.translation(element.normal);
+    const Mat3 about = element.stiffness.rotation(element.normal);
+    block_at(matrix, 2 * e) = 0.5 * (along + along.transpose());  // symmetric to the bit
+    block_at(matrix, 2 * e + 1) = 0.5 * (about + about.transpose());
   }
   return matrix;
 }

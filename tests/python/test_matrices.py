@@ -45,13 +45,23 @@ def test_fixed_components_are_masked():
     assert reduced.shape == mass.shape == (10, 10)
 
 
-def test_clumps_have_b_along_their_axes(examples):
-    system = eigengrain.load(examples / "scenes" / "clumps.yaml", set={"walls": [
-        {"box": {"min": [0, 0, 0.0], "max": [0.2, 0.2, 1], "open": ["+z"]}, "material": "rock"}]}).system()
-    if len(system.elements) == 0:
-        pytest.skip("nothing touches at the start of this scene")
+def test_clumps_have_b_along_their_axes():
+    """A clump that lies on a floor and on a ball, turned so that its principal axes are none of space."""
+    scene = two_balls(clumps=[{"balls": [{"at": [0, 0, 0], "radius": 0.005}, {"at": [0.007, 0, 0], "radius": 0.004}],
+                               "material": "grain",
+                               "instances": [{"position": [0.0071, 0.001, 0.0049], "axis": [1, 2, 3], "angle": 0.7}]}])
+    state = eigengrain.load(scene)
+    system = state.system()
     k, b, d = system.K, system.B, system.D
-    assert abs(k - b.T @ d @ b).max() < 1e-12 * abs(k).max()
+    clump_rows = np.flatnonzero(state.bodies.owner != np.arange(len(state.bodies)))
+    assert len(clump_rows) == 1
+    holder = state.bodies.owner[clump_rows[0]]
+    assert holder in system.elements.a or holder in system.elements.b
+    assert system.rotation_block[holder] >= 0 and len(system.elements) > 2
+    assert abs(k - b.T @ d @ b).max() < 1e-13 * abs(k).max()
+    x = np.random.default_rng(5).normal(size=system.size)
+    np.testing.assert_allclose(system.from_bodies(*system.to_bodies(x)), x, rtol=1e-13)
+    assert not np.allclose(system.to_bodies(x)[1][holder], x[3 * system.rotation_block[holder]:][:3])
 
 
 def test_the_truth_is_that_of_eigsh(bed):

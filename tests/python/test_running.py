@@ -96,11 +96,11 @@ def test_no_equilibrium_is_an_error_with_its_ratio():
 
 def test_balls_are_put_elsewhere():
     state = eigengrain.load(two_balls())
-    place = state.bodies.position + [0, 0, 1e-5]
+    place = state.bodies.position + [0, 0, 2e-5]
     state.change(position=place, velocity=np.ones((2, 3)))
     np.testing.assert_array_equal(state.bodies.position, place)
     np.testing.assert_array_equal(state.bodies.velocity, np.ones((2, 3)))
-    assert len(state.contacts) == 1  # 1e-5 m is all that the floor was overlapped by
+    assert len(state.contacts) == 1  # the floor was overlapped by 1e-5 m
     with pytest.raises(eigengrain.InputError, match=r"shape \(2, 3\)"):
         state.change(velocity=np.ones((3, 3)))
     with pytest.raises(eigengrain.InputError, match="row 1"):
@@ -121,9 +121,10 @@ INTERRUPTED = """
 
 
 @pytest.mark.parametrize("work", ["run(10**12)", "run(10**12, callback=lambda state: None, every=10**9)",
-                                  "relax(1e-300, max_steps=10**9)"])
+                                  "relax(max_steps=10**9)"])
 def test_ctrl_c_ends_long_work_between_steps(work):
-    scene = dense_packing()
+    # Two balls that fall for ever never come to rest.
+    scene = two_balls(walls=[]) if work.startswith("relax") else dense_packing()
     code = textwrap.dedent(INTERRUPTED).format(scene=scene, work=work)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr

@@ -32,7 +32,7 @@ def test_numbers_of_numpy_and_arrays_of_balls():
 
 def test_overrides_as_of_the_command_line():
     state = eigengrain.load(two_balls(), set={"contacts.0.kn": 2e5, "gravity": [0, 0, -1]})
-    assert eigengrain.load(two_balls(), set=["contacts.0.kn=2e5", "gravity=[0, 0, -1]"]).settings == state.settings
+    assert eigengrain.load(two_balls(), set=["contacts.0.kn=200000.0", "gravity=[0, 0, -1]"]).settings == state.settings
     assert state.system().elements.kn.tolist() == [2e5, 2e5]
 
 

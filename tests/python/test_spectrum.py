@@ -16,24 +16,23 @@ def scaled(system):
     return (root @ k @ root).tocsc()
 
 
-def test_twenty_lowest_and_highest_modes_are_those_of_eigsh(bed):
+def test_twenty_highest_modes_of_the_bed_are_those_of_eigsh(bed):
     system = bed.system()
+    expected = scipy.sparse.linalg.eigsh(scaled(system), k=20, which="LA", tol=1e-12, return_eigenvectors=False)
+    np.testing.assert_allclose(system.highest_modes(20).eigenvalues, np.sort(expected)[::-1], rtol=1e-10)
+
+
+def test_twenty_lowest_and_highest_modes_are_those_of_eigsh(packing):
+    """Shift-invert a little above the middle of what is looked for: zeros are farther from there than any of it."""
+    system = packing.system()
     a = scaled(system)
     high, low = system.highest_modes(20), system.lowest_modes(20)
     assert len(high) == len(low) == 20
-    expected = scipy.sparse.linalg.eigsh(a, k=20, which="LA", tol=1e-12, return_eigenvectors=False)[::-1]
-    np.testing.assert_allclose(high.eigenvalues, np.sort(expected)[::-1], rtol=1e-8)
-    largest = high.eigenvalues[0]
-    # Shift-invert finds what is nearest to a shift below all that is resisted; zeros are as many as there are floppy
-    # motions, and come first.
-    zeros = int((bed.rigidity().floppy if len(bed.bodies) < 2000 else 0))
-    shift = 0.5 * low.eigenvalues[0]
-    nearest = scipy.sparse.linalg.eigsh(a - shift * scipy.sparse.identity(a.shape[0]), k=45, sigma=0.0, which="LM",
-                                        tol=1e-12, return_eigenvectors=False) + shift
-    resisted = np.sort(nearest[nearest > 1e-10 * largest])
-    count = min(20, len(resisted))
-    assert zeros >= 0 and count >= 10
-    np.testing.assert_allclose(low.eigenvalues[:count], resisted[:count], rtol=1e-8)
+    expected = scipy.sparse.linalg.eigsh(a, k=20, which="LA", tol=1e-12, return_eigenvectors=False)
+    np.testing.assert_allclose(high.eigenvalues, np.sort(expected)[::-1], rtol=1e-10)
+    nearest = scipy.sparse.linalg.eigsh(a, k=20, sigma=0.51 * low.eigenvalues[-1], which="LM", tol=1e-12,
+                                        return_eigenvectors=False)
+    np.testing.assert_allclose(low.eigenvalues, np.sort(nearest), rtol=1e-8)
 
 
 def test_modes_are_orthonormal_and_solve_the_problem(packing):
@@ -134,28 +133,26 @@ def test_moduli_want_a_cell(bed):
         bed.moduli()
 
 
-def test_finite_strain_of_a_relaxed_cell_agrees_to_the_overlap():
-    """The cell is strained a little and relaxed; stresses change by C times the strain, but for terms of the size of the
-    overlap over the radius, which K leaves out."""
-    scene = dense_packing(friction=0) | {"damping": {"local": 0.7}}
-    scene["contacts"][0]["ks"] = 0
-    start = eigengrain.load(scene)
+def test_finite_strains_agree_to_the_overlap():
+    """A cell is strained by 1e-7 and relaxed: so little that no contact opens or closes. The stress changes by C times the
+    strain, but for what K leaves out, which is of the size of the overlap over the radius (2e-3)."""
+    start = eigengrain.load(dense_packing())
     start.relax(1e-11)
-    c = start.moduli().stiffness
-    stresses = []
-    for sign in (1, -1):
-        strained = start.with_settings({"periodic.velocity_gradient": [[sign * 1.0, 0, 0], [0, 0, 0], [0, 0, 0]]})
+    contacts = len(start.contacts)
+    found = []
+    for strain in (1e-7, -1e-7):
+        rate = strain / start.copy().timestep(certify="never").true.limit
+        strained = start.with_settings({"periodic.velocity_gradient": [[rate, 0, 0], [0, 0, 0], [0, 0, 0]]})
         strained.run(1)
-        steps = max(1, round(2e-7 / strained.dt))
-        strained.run(steps - 1) if steps > 1 else None
         strained = strained.with_settings({"periodic.velocity_gradient": []})
-        edges = strained.cell[0]
         strained.relax(1e-11)
-        stresses.append((edges[0, 0], strained.measure().stress))
-    strain = (stresses[0][0] - stresses[1][0]) / start.cell[0][0, 0]
-    slope = (stresses[0][1] - stresses[1][1]) / strain
-    assert slope[0, 0] == pytest.approx(c[0, 0], rel=0.05)
-    assert slope[1, 1] == pytest.approx(c[1, 0], rel=0.1)
+        assert len(strained.contacts) == contacts
+        found.append((strained.cell[0][0, 0], strained.measure().stress))
+    strain = (found[0][0] - found[1][0]) / start.cell[0][0, 0]
+    assert 1e-8 < strain < 1e-6
+    slope = (found[0][1] - found[1][1]) / strain
+    c = start.moduli().stiffness
+    np.testing.assert_allclose(np.diag(slope), c[:3, 0], rtol=0, atol=4e-3 * c[0, 0])
 
 
 def test_mode_shapes_for_paraview(small, tmp_path):
