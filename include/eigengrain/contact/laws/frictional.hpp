@@ -136,10 +136,13 @@ class Frictional {
     const Real normal_force = springs_.force(motion, old.memory);
     const Vec3Of<Real> trial = trial_shear(motion, old);
     const MaskOf<Real> sliding = slips(trial, normal_force);
-    const Real within = friction_ * normal_force / sqrt(trial.squaredNorm());
     next.normal = motion.normal;
     next.memory = springs_.remembered(motion, old.memory);
-    next.shear = select<Real>(sliding, within * trial, trial);
+    next.shear = trial;
+    if (!none(sliding)) {
+      const Real within = friction_ * normal_force / sqrt(trial.squaredNorm());
+      next.shear = select<Real>(sliding, within * trial, trial);
+    }
     return {.force = {.force = normal_force * motion.normal + next.shear},
             .normal_force = normal_force,
             .slides = sliding};

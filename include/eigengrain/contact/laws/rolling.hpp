@@ -65,7 +65,10 @@ class Rolling : public Base {
     if (none(Base::template acts<Real>(motion, old))) return response;
     const Vec3Of<Real> trial = trial_moment(motion, old);
     const Real limit = limit_of(motion, response);
-    next.moment = select<Real>(slips(trial, limit), limit / sqrt(trial.squaredNorm()) * trial, trial);
+    const MaskOf<Real> sliding = slips(trial, limit);
+    next.moment = trial;
+    if (!none(sliding))
+      next.moment = select<Real>(sliding, limit / sqrt(trial.squaredNorm()) * trial, trial);
     response.force.moment += next.moment;
     return response;
   }
