@@ -47,8 +47,8 @@ struct Row<model::Image> {
   static constexpr int components = 3;
 };
 
-/// `count` rows of numbers that belong to `owner`, without a copy. Writable only where they are made for whoever
-/// asks.
+/// `count` rows of numbers that belong to `owner`, without a copy. Writable only where they are made for
+/// whoever asks.
 template <class Number>
 py::array view(const Number* data, std::size_t count, int components, std::shared_ptr<const void> owner,
                bool writable = false) {

@@ -15,9 +15,7 @@ class Handle {
       : state_(std::make_shared<const assembly::State>(std::move(state))) {}
 
   const std::shared_ptr<const assembly::State>& state() const { return state_; }
-  void replace(assembly::State state) {
-    state_ = std::make_shared<const assembly::State>(std::move(state));
-  }
+  void replace(assembly::State state) { state_ = std::make_shared<const assembly::State>(std::move(state)); }
 
  private:
   std::shared_ptr<const assembly::State> state_;

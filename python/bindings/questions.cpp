@@ -26,8 +26,8 @@ py::dict to_dict(const timestep::Truth& truth) {
   return py::dict("dt"_a = truth.dt, "limit"_a = truth.limit, "lambda_max"_a = truth.lambda_max,
                   "residual"_a = truth.residual, "limit_residual"_a = truth.limit_residual,
                   "certified"_a = truth.certified, "proven_dt"_a = truth.proof.dt,
-                  "proven_by"_a = std::string(timestep::name_of(truth.proof.by)), "mode"_a = owned(truth.mode),
-                  "seconds"_a = truth.seconds, "products"_a = truth.products);
+                  "proven_by"_a = std::string(timestep::name_of(truth.proof.by)),
+                  "mode"_a = owned(truth.mode), "seconds"_a = truth.seconds, "products"_a = truth.products);
 }
 
 py::dict to_dict(const timestep::Estimate& estimate) {
@@ -39,7 +39,8 @@ py::dict to_dict(const timestep::Estimate& estimate) {
   return result;
 }
 
-py::dict critical_timestep(const Handle& handle, double tolerance, std::uint64_t seed, const std::string& certify) {
+py::dict critical_timestep(const Handle& handle, double tolerance, std::uint64_t seed,
+                           const std::string& certify) {
   const std::shared_ptr<const assembly::State> state = handle.state();
   timestep::TruthOptions options;
   options.tolerance = tolerance;

@@ -45,8 +45,9 @@ py::dict to_dict(const System& self, spectrum::Modes modes) {
     translation.push_back(character.translation);
   }
   py::array shapes = rows_of(modes.shape, self.system.mass.size());
-  return py::dict("eigenvalues"_a = owned(std::move(modes.lambda)), "residuals"_a = owned(std::move(modes.residual)),
-                  "shapes"_a = std::move(shapes), "participation"_a = owned(std::move(participation)),
+  return py::dict("eigenvalues"_a = owned(std::move(modes.lambda)),
+                  "residuals"_a = owned(std::move(modes.residual)), "shapes"_a = std::move(shapes),
+                  "participation"_a = owned(std::move(participation)),
                   "translation"_a = owned(std::move(translation)));
 }
 
@@ -99,13 +100,14 @@ py::dict rigidity(const Handle& handle, const std::string& springs, bool with_ra
   }
   const auto bodies = static_cast<std::size_t>(state->model.bodies.size());
   py::dict result("bodies"_a = found.bodies, "rattlers"_a = found.rattlers, "set_aside"_a = found.set_aside,
-                  "contacts"_a = found.contacts, "springs"_a = found.springs.size(), "unknowns"_a = found.unknowns,
-                  "floppy"_a = found.floppy, "trivial"_a = found.trivial, "self_stress"_a = found.self_stress,
-                  "excess"_a = found.excess(), "counts_agree"_a = found.counts_agree(),
-                  "floppy_residual"_a = found.floppy_residual, "stress_residual"_a = found.stress_residual,
-                  "seconds"_a = found.seconds);
+                  "contacts"_a = found.contacts, "springs"_a = found.springs.size(),
+                  "unknowns"_a = found.unknowns, "floppy"_a = found.floppy, "trivial"_a = found.trivial,
+                  "self_stress"_a = found.self_stress, "excess"_a = found.excess(),
+                  "counts_agree"_a = found.counts_agree(), "floppy_residual"_a = found.floppy_residual,
+                  "stress_residual"_a = found.stress_residual, "seconds"_a = found.seconds);
   result["floppy_u"] = rows_of(found.floppy_u, 3 * bodies).attr("reshape")(found.floppy_u.size(), bodies, 3);
-  result["floppy_theta"] = rows_of(found.floppy_theta, 3 * bodies).attr("reshape")(found.floppy_theta.size(), bodies, 3);
+  result["floppy_theta"] =
+      rows_of(found.floppy_theta, 3 * bodies).attr("reshape")(found.floppy_theta.size(), bodies, 3);
   result["stresses"] = rows_of(found.stress, found.springs.size());
   std::vector<std::int32_t> a;
   std::vector<std::int32_t> b;
@@ -139,9 +141,10 @@ py::dict moduli(const Handle& handle) {
   }
   return py::dict("stiffness"_a = matrix(found.stiffness), "affine"_a = matrix(found.affine),
                   "volume"_a = found.volume, "contacts"_a = found.contacts, "bulk"_a = found.bulk(),
-                  "shear"_a = found.shear(), "residuals"_a = std::vector<double>(found.residual.begin(), found.residual.end()),
-                  "iterations"_a = found.iterations, "seconds"_a = found.seconds, "displacement"_a = displacement,
-                  "rotation"_a = rotation);
+                  "shear"_a = found.shear(),
+                  "residuals"_a = std::vector<double>(found.residual.begin(), found.residual.end()),
+                  "iterations"_a = found.iterations, "seconds"_a = found.seconds,
+                  "displacement"_a = displacement, "rotation"_a = rotation);
 }
 
 std::vector<std::string> export_matrices(const SharedSystem& self, const std::string& folder,
@@ -161,8 +164,8 @@ void write_modes(const SharedSystem& self, const std::string& file,
     throw InputError("shapes: an array of shape (modes, " + std::to_string(size) + ") is wanted");
   std::vector<spectrum::BodyMotion> motions;
   for (py::ssize_t k = 0; k < shapes.shape(0); ++k)
-    motions.push_back(spectrum::motion_of_bodies(
-        self->system, {shapes.data() + k * size, static_cast<std::size_t>(size)}));
+    motions.push_back(
+        spectrum::motion_of_bodies(self->system, {shapes.data() + k * size, static_cast<std::size_t>(size)}));
   std::vector<io::ModeShape> drawn;
   for (const spectrum::BodyMotion& motion : motions)
     drawn.push_back({motion.displacement, motion.rotation, motion.energy});
@@ -190,11 +193,12 @@ void add_spectra(py::module_& module) {
         return modes_by(self, [&](const auto& system) { return spectrum::all_modes(system, shapes); });
       },
       py::arg("system"), py::arg("shapes"));
-  module.def("density_of_states", &density, py::arg("system"), py::arg("moments"), py::arg("vectors"), py::arg("bins"),
-             py::arg("seed"));
+  module.def("density_of_states", &density, py::arg("system"), py::arg("moments"), py::arg("vectors"),
+             py::arg("bins"), py::arg("seed"));
   module.def("smeared", &spectrum::smeared, py::arg("eigenvalue"), py::arg("bound"), py::arg("moments"),
              py::arg("edges"));
-  module.def("rigidity", &rigidity, py::arg("state"), py::arg("springs"), py::arg("with_rattlers"), py::arg("shapes"));
+  module.def("rigidity", &rigidity, py::arg("state"), py::arg("springs"), py::arg("with_rattlers"),
+             py::arg("shapes"));
   module.def("moduli", &moduli, py::arg("state"));
   module.def("export_matrices", &export_matrices, py::arg("system"), py::arg("folder"), py::arg("formats"));
   module.def("write_modes", &write_modes, py::arg("system"), py::arg("file"), py::arg("shapes"));

@@ -33,8 +33,8 @@ namespace {
 using assembly::State;
 using Snapshot = std::shared_ptr<const State>;
 
-constexpr std::int64_t steps_between_looks = 100;      // for a blow-up, as the program does
-constexpr double seconds_between_interrupts = 0.1;     // no result depends on it
+constexpr std::int64_t steps_between_looks = 100;   // for a blow-up, as the program does
+constexpr double seconds_between_interrupts = 0.1;  // no result depends on it
 
 Handle start_text(const std::string& yaml, const std::string& folder, const std::string& name,
                   const std::vector<std::string>& overrides) {
@@ -74,7 +74,8 @@ void run(Handle& handle, std::int64_t steps, double until, const py::object& rep
         for (const std::int64_t body : trouble->bodies)
           names += (names.empty() ? "" : ", ") + std::to_string(body);
         throw SolverError("the run blew up before step " + std::to_string(cycle.state().step) + ": " +
-                          trouble->what + " (balls " + names + "); the state is still that of the start of the run");
+                          trouble->what + " (balls " + names +
+                          "); the state is still that of the start of the run");
       }
     };
     Stopwatch since;
@@ -150,9 +151,9 @@ py::dict relax(Handle& handle, double tolerance, std::int64_t max_steps, const p
   if (interrupt) std::rethrow_exception(interrupt);
   return py::dict("converged"_a = result.converged, "method"_a = result.method,
                   "steps"_a = result.explicit_steps, "part_steps"_a = result.part_steps,
-                  "iterations"_a = result.newton_iterations,
-                  "linear_iterations"_a = result.linear_iterations, "seconds"_a = result.seconds,
-                  "start"_a = to_dict(result.start), "end"_a = to_dict(result.end));
+                  "iterations"_a = result.newton_iterations, "linear_iterations"_a = result.linear_iterations,
+                  "seconds"_a = result.seconds, "start"_a = to_dict(result.start),
+                  "end"_a = to_dict(result.end));
 }
 
 using Rows3 = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -296,7 +297,8 @@ void add_states(py::module_& module) {
     const py::gil_scoped_release open;
     return std::make_shared<ContactColumns>(kept->model);
   });
-  state.def("wall_forces", [](const Handle& self) { return owned(assembly::wall_forces(self.state()->model)); });
+  state.def("wall_forces",
+            [](const Handle& self) { return owned(assembly::wall_forces(self.state()->model)); });
   column(state, "identity", &model::Bodies::identity);
   column(state, "position", &model::Bodies::position);
   column(state, "radius", &model::Bodies::radius);
@@ -307,9 +309,10 @@ void add_states(py::module_& module) {
   column(state, "velocity", &model::Bodies::velocity);
   column(state, "spin", &model::Bodies::spin);
   column(state, "orientation", &model::Bodies::orientation);
-  state.def_property_readonly("force", [](const Handle& self) { return view(self.state()->force, self.state()); });
-  state.def_property_readonly("moment",
-                              [](const Handle& self) { return view_or_none(self.state()->moment, self.state()); });
+  state.def_property_readonly("force",
+                              [](const Handle& self) { return view(self.state()->force, self.state()); });
+  state.def_property_readonly(
+      "moment", [](const Handle& self) { return view_or_none(self.state()->moment, self.state()); });
   state.def_property_readonly("owner", [](const Handle& self) {
     const model::Bodies& bodies = self.state()->model.bodies;
     std::vector<std::int32_t> owner;
@@ -325,14 +328,18 @@ void add_states(py::module_& module) {
   state.def_property_readonly("name", [](const Handle& self) { return self.state()->settings.name; });
   state.def_property_readonly("settings", [](const Handle& self) { return self.state()->settings.document; });
   state.def_property_readonly("notes", [](const Handle& self) { return self.state()->settings.notes; });
-  state.def_property_readonly("has_stages", [](const Handle& self) { return !self.state()->settings.stages.empty(); });
-  state.def_property_readonly("goal_steps", [](const Handle& self) { return self.state()->settings.run.steps; });
-  state.def_property_readonly("goal_time", [](const Handle& self) { return self.state()->settings.run.time; });
+  state.def_property_readonly("has_stages",
+                              [](const Handle& self) { return !self.state()->settings.stages.empty(); });
+  state.def_property_readonly("goal_steps",
+                              [](const Handle& self) { return self.state()->settings.run.steps; });
+  state.def_property_readonly("goal_time",
+                              [](const Handle& self) { return self.state()->settings.run.time; });
   state.def_property_readonly("goal_unbalanced",
                               [](const Handle& self) { return self.state()->settings.run.unbalanced; });
   state.def_property_readonly("cell", [](const Handle& self) {
     const model::PeriodicCell& cell = self.state()->model.cell;
-    return py::make_tuple(matrix(cell.edges), std::vector<double>{cell.origin[0], cell.origin[1], cell.origin[2]},
+    return py::make_tuple(matrix(cell.edges),
+                          std::vector<double>{cell.origin[0], cell.origin[1], cell.origin[2]},
                           std::vector<bool>(cell.periodic.begin(), cell.periodic.end()));
   });
 }

@@ -32,8 +32,7 @@ SharedSystem system_of(const Handle& handle, bool all) {
 py::tuple for_scipy(BlockMatrix matrix) {
   const auto kept = std::make_shared<BlockMatrix>(std::move(matrix));
   return py::make_tuple(view(kept->values, kept, true), view(kept->columns, kept, true),
-                        view(kept->offsets, kept, true),
-                        kept->rows(), kept->column_count());
+                        view(kept->offsets, kept, true), kept->rows(), kept->column_count());
 }
 
 template <class Make>
@@ -123,9 +122,12 @@ void add_systems(py::module_& module) {
   using contact::ContactElement;
   py::class_<System, SharedSystem> system(module, "System");
   system.def(py::init(&system_of), py::arg("state"), py::arg("all"));
-  system.def("stiffness", [](const SharedSystem& self) { return matrix_of(self, assembly::stiffness_blocks); });
-  system.def("kinematics", [](const SharedSystem& self) { return matrix_of(self, assembly::kinematic_blocks); });
-  system.def("elasticity", [](const SharedSystem& self) { return matrix_of(self, assembly::elasticity_blocks); });
+  system.def("stiffness",
+             [](const SharedSystem& self) { return matrix_of(self, assembly::stiffness_blocks); });
+  system.def("kinematics",
+             [](const SharedSystem& self) { return matrix_of(self, assembly::kinematic_blocks); });
+  system.def("elasticity",
+             [](const SharedSystem& self) { return matrix_of(self, assembly::elasticity_blocks); });
   system.def("viscosity", [](const SharedSystem& self) {
     if (self->system.damping.empty()) throw InputError("no contact of this state has dashpots");
     return matrix_of(self, [](const LinearSystem& of) {
@@ -134,11 +136,12 @@ void add_systems(py::module_& module) {
       return assembly::stiffness_blocks(viscous);
     });
   });
-  system.def_property_readonly("mass", [](const SharedSystem& self) { return view(self->system.mass, self); });
+  system.def_property_readonly("mass",
+                               [](const SharedSystem& self) { return view(self->system.mass, self); });
   system.def_property_readonly("size", [](const System& self) { return self.system.unknowns.size(); });
   system.def_property_readonly("elements", [](const System& self) { return self.system.elements.size(); });
-  system.def_property_readonly("free",
-                               [](const System& self) { return owned(self.system.unknowns.free_components()); });
+  system.def_property_readonly(
+      "free", [](const System& self) { return owned(self.system.unknowns.free_components()); });
   system.def_property_readonly(
       "set_aside", [](const SharedSystem& self) { return view(self->system.unknowns.set_aside(), self); });
   system.def_property_readonly("translation_block", [](const System& self) {

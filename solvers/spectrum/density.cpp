@@ -36,7 +36,8 @@ double angle(double fraction) {
 }
 
 /// The integral of the density over each bin, from its moments; all bins together give μ_0.
-std::vector<double> integrals(const std::vector<double>& moment, int moments, const std::vector<double>& t_of_edge) {
+std::vector<double> integrals(const std::vector<double>& moment, int moments,
+                              const std::vector<double>& t_of_edge) {
   std::vector<double> damped(static_cast<std::size_t>(moments));
   for (int n = 0; n < moments; ++n) damped[n] = jackson(n, moments) * moment[n];
   // From t to π, where λ = 0.
@@ -69,10 +70,10 @@ Eigen::VectorXd random_signs(std::span<const double> scale, std::mt19937_64& ran
   return result;
 }
 
-/// z·T_n(Ã)z for n < moments, by z·T_2n z = 2|T_n z|² - z·z and z·T_2n+1 z = 2 T_n z·T_n+1 z - z·T_1 z. Nothing after
-/// an interrupt.
-std::optional<std::vector<double>> moments_of(StiffnessProduct& product, double bound, const Eigen::VectorXd& z,
-                                              const DensityOptions& options) {
+/// z·T_n(Ã)z for n < moments, by z·T_2n z = 2|T_n z|² - z·z and z·T_2n+1 z = 2 T_n z·T_n+1 z - z·T_1 z.
+/// Nothing after an interrupt.
+std::optional<std::vector<double>> moments_of(StiffnessProduct& product, double bound,
+                                              const Eigen::VectorXd& z, const DensityOptions& options) {
   const auto size = static_cast<std::size_t>(z.size());
   std::vector<double> moment(static_cast<std::size_t>(options.moments), 0.0);
   Eigen::VectorXd image(z.size());

@@ -30,7 +30,7 @@ constexpr double zero_part = 1e-10;
 
 /// The eigenvectors, if there are any, belong to the scaled problem on the free components.
 Modes with_residuals(const LinearSystem& system, const Eigen::VectorXd& lambda,
-                          const Eigen::MatrixXd* vectors) {
+                     const Eigen::MatrixXd* vectors) {
   Modes result;
   const std::vector<double> scale = system.inverse_sqrt_mass();
   const std::vector<std::int32_t> free = system.unknowns.free_components();
@@ -58,7 +58,8 @@ Modes with_residuals(const LinearSystem& system, const Eigen::VectorXd& lambda,
 
 Modes highest_modes(const LinearSystem& system, int count, const timestep::TruthOptions& options) {
   Modes result;
-  if (count < 1) throw InputError(fmt::format("{} of the highest modes; a number from 1 up is wanted", count));
+  if (count < 1)
+    throw InputError(fmt::format("{} of the highest modes; a number from 1 up is wanted", count));
   if (system.unknowns.free_components().empty()) return result;
   petsc::start();
   const std::vector<double> scale = system.inverse_sqrt_mass();
@@ -85,10 +86,11 @@ Modes lowest_modes(const LinearSystem& system, int count) {
 Modes all_modes(const LinearSystem& system, bool shapes) {
   const auto free = static_cast<std::int64_t>(system.unknowns.free_components().size());
   if (free > dense_unknowns)
-    throw InputError(fmt::format(
-        "all modes of {} unknowns would take a dense matrix of {:.0f} GB; ask for the lowest and highest ones, or for "
-        "the density of states (up to {} unknowns all are computed)",
-        free, 8e-9 * static_cast<double>(free) * static_cast<double>(free), dense_unknowns));
+    throw InputError(
+        fmt::format("all modes of {} unknowns would take a dense matrix of {:.0f} GB; ask for the lowest and "
+                    "highest ones, or for "
+                    "the density of states (up to {} unknowns all are computed)",
+                    free, 8e-9 * static_cast<double>(free) * static_cast<double>(free), dense_unknowns));
   if (free == 0) return {};
   petsc::start();  // holds BLAS to one thread
   Eigen::MatrixXd a = assembly::dense_scaled_stiffness(system);
@@ -103,8 +105,8 @@ Modes all_modes(const LinearSystem& system, bool shapes) {
   std::vector<double> work(static_cast<std::size_t>(work_size));
   std::vector<PetscBLASInt> integers(static_cast<std::size_t>(integer_size));
   auto work_length = static_cast<PetscBLASInt>(work.size());
-  LAPACKsyevd_(job, "L", &n, a.data(), &n, lambda.data(), work.data(), &work_length, integers.data(), &integer_size,
-               &info);
+  LAPACKsyevd_(job, "L", &n, a.data(), &n, lambda.data(), work.data(), &work_length, integers.data(),
+               &integer_size, &info);
   if (info != 0) throw SolverError(fmt::format("LAPACK's dsyevd failed with {} on all modes", info));
   return with_residuals(system, lambda, shapes ? &a : nullptr);
 }

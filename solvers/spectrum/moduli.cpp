@@ -26,7 +26,8 @@ using assembly::Unknowns;
 using contact::ContactElement;
 using timestep::SparseFactor;
 
-/// The shift of the factor over λ_max: conjugate gradients see λ/(λ + σ), which is nearly 1 for all that matters.
+/// The shift of the factor over λ_max: conjugate gradients see λ/(λ + σ), which is nearly 1 for all that
+/// matters.
 constexpr double shift = 1e-9;
 constexpr double tolerance = 1e-13;
 /// What rounding may leave of it.
@@ -90,7 +91,8 @@ class Response {
     EIGENGRAIN_PETSC(KSPSetOperators(solver_.get(), shell_.mat(), shell_.mat()));
     EIGENGRAIN_PETSC(KSPSetType(solver_.get(), KSPCG));
     EIGENGRAIN_PETSC(KSPSetNormType(solver_.get(), KSP_NORM_UNPRECONDITIONED));
-    EIGENGRAIN_PETSC(KSPSetTolerances(solver_.get(), tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
+    EIGENGRAIN_PETSC(
+        KSPSetTolerances(solver_.get(), tolerance, PETSC_DEFAULT, PETSC_DEFAULT, most_iterations));
     PC pc = nullptr;
     EIGENGRAIN_PETSC(KSPGetPC(solver_.get(), &pc));
     if (system.unknowns.size() > factored_unknowns) {
@@ -141,7 +143,8 @@ class Response {
 void check(const assembly::Model& model) {
   if (!(model.cell.periodic[0] && model.cell.periodic[1] && model.cell.periodic[2]))
     throw InputError(
-        "moduli are those of a cell that repeats along all axes; write periodic: {box: [...]} without axes, and no walls");
+        "moduli are those of a cell that repeats along all axes; write periodic: {box: [...]} without axes, "
+        "and no walls");
   for (std::size_t row = 0; row < model.bodies.fixed.size(); ++row)
     if (model.bodies.fixed[row].bits() != 0)
       throw InputError(fmt::format(
@@ -178,14 +181,16 @@ Moduli elastic_moduli(const assembly::Model& model) {
   for (int j = 0; j < 6; ++j) pushes.col(j) = push(system, scale, unit_strain(j));
   Eigen::Matrix<double, Eigen::Dynamic, 6> answers = decltype(pushes)::Zero(pushes.rows(), 6);
   // Of lattices in which all bodies follow the strain, rounding alone.
-  const double nothing = 1e-12 * std::sqrt(top.lambda.front() * result.affine.diagonal().maxCoeff() * result.volume);
+  const double nothing =
+      1e-12 * std::sqrt(top.lambda.front() * result.affine.diagonal().maxCoeff() * result.volume);
   for (int j = 0; j < 6; ++j) {
     if (!(pushes.col(j).norm() > nothing)) continue;
     const auto [y, residual] = response.solve(pushes.col(j), result);
     if (!(residual <= largest_residual))
-      throw SolverError(fmt::format("moduli: the response to strain {} has a residual of {:.1e} after {} iterations, and "
-                                    "{:.0e} is wanted; contacts are too far apart in stiffness",
-                                    j, residual, result.iterations, largest_residual));
+      throw SolverError(
+          fmt::format("moduli: the response to strain {} has a residual of {:.1e} after {} iterations, and "
+                      "{:.0e} is wanted; contacts are too far apart in stiffness",
+                      j, residual, result.iterations, largest_residual));
     answers.col(j) = y;
     result.residual[static_cast<std::size_t>(j)] = residual;
   }

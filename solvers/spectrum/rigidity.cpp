@@ -38,7 +38,8 @@ std::int32_t least_contacts(const Model& model, Springs springs) {
 }
 
 /// The contacts that count, with the springs that count.
-std::vector<ContactElement> counted_elements(const Model& model, const RigidityOptions& options, Rigidity& result) {
+std::vector<ContactElement> counted_elements(const Model& model, const RigidityOptions& options,
+                                             Rigidity& result) {
   const std::vector<measures::ActingContact> acting = measures::acting_contacts(model);
   const std::vector<bool> rattler = measures::rattlers(model, acting, least_contacts(model, options.springs));
   for (std::int32_t row = 0; row < model.bodies.size(); ++row)
@@ -48,7 +49,8 @@ std::vector<ContactElement> counted_elements(const Model& model, const RigidityO
   assembly::for_each_element(model, assembly::Listed::acting, [&](const auto& law, ContactElement element) {
     bool slides = false;
     if constexpr (!contact::is_beside_law<std::decay_t<decltype(law)>>) slides = acting[contact++].slides;
-    if (!options.with_rattlers && (rattler[element.a] || (element.b != no_body && rattler[element.b]))) return;
+    if (!options.with_rattlers && (rattler[element.a] || (element.b != no_body && rattler[element.b])))
+      return;
     contact::ContactStiffness& k = element.stiffness;
     if (options.springs == Springs::normal)
       k = {.normal = k.normal};
@@ -68,9 +70,12 @@ std::pair<Vec3, Vec3> across(const Vec3& n) {
 /// √D B M^-½ on the free components, as entries, with its springs.
 class SpringMatrix {
  public:
-  SpringMatrix(const model::Bodies& bodies, std::span<const ContactElement> elements, const Unknowns& unknowns,
-               std::vector<Spring>& springs)
-      : bodies_(bodies), unknowns_(unknowns), springs_(springs), column_(static_cast<std::size_t>(unknowns.size()), -1) {
+  SpringMatrix(const model::Bodies& bodies, std::span<const ContactElement> elements,
+               const Unknowns& unknowns, std::vector<Spring>& springs)
+      : bodies_(bodies),
+        unknowns_(unknowns),
+        springs_(springs),
+        column_(static_cast<std::size_t>(unknowns.size()), -1) {
     const std::vector<std::int32_t> free = unknowns.free_components();
     for (std::size_t k = 0; k < free.size(); ++k) column_[free[k]] = static_cast<std::int32_t>(k);
     columns_ = static_cast<std::int64_t>(free.size());
@@ -192,14 +197,18 @@ Rigidity rigidity(const Model& model, const RigidityOptions& options) {
   const double tolerance = zero_part * norm;
   result.trivial = count_trivial(model.bodies, unknowns, matrix, rows, norm);
 
-  // The null space of S is what the columns of Q beyond the rank of Sᵀ = Q R span; that of Sᵀ likewise from S = Q R.
-  const QrResult of_transpose = session.decompose(matrix.entries(), rows, result.unknowns, true, tolerance, options.shapes);
-  const QrResult of_matrix = session.decompose(matrix.entries(), rows, result.unknowns, false, tolerance, options.shapes);
+  // The null space of S is what the columns of Q beyond the rank of Sᵀ = Q R span; that of Sᵀ likewise from S
+  // = Q R.
+  const QrResult of_transpose =
+      session.decompose(matrix.entries(), rows, result.unknowns, true, tolerance, options.shapes);
+  const QrResult of_matrix =
+      session.decompose(matrix.entries(), rows, result.unknowns, false, tolerance, options.shapes);
   result.floppy = result.unknowns - of_transpose.rank;
   result.self_stress = rows - of_matrix.rank;
   if (options.shapes) {
     result.floppy_residual = largest_image(matrix.entries(), rows, of_transpose.null_space, false) / norm;
-    result.stress_residual = largest_image(matrix.entries(), result.unknowns, of_matrix.null_space, true) / norm;
+    result.stress_residual =
+        largest_image(matrix.entries(), result.unknowns, of_matrix.null_space, true) / norm;
     const std::vector<std::int32_t> free = unknowns.free_components();
     for (Eigen::Index k = 0; k < of_transpose.null_space.cols(); ++k) {
       std::vector<double> u(static_cast<std::size_t>(3 * unknowns.bodies()), 0.0);

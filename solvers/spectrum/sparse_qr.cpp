@@ -50,13 +50,14 @@ SparseQr::SparseQr() : common_(std::make_unique<Common>()) {
 }
 SparseQr::~SparseQr() = default;
 
-QrResult SparseQr::decompose(std::span<const Entry> entries, std::int64_t rows, std::int64_t columns, bool transposed,
-                             double tolerance, bool null_space) {
+QrResult SparseQr::decompose(std::span<const Entry> entries, std::int64_t rows, std::int64_t columns,
+                             bool transposed, double tolerance, bool null_space) {
   cholmod_common& common = common_->of;
   if (transposed) std::swap(rows, columns);
-  const Kept triplet(cholmod_l_allocate_triplet(static_cast<std::size_t>(rows), static_cast<std::size_t>(columns),
-                                                entries.size(), 0, CHOLMOD_REAL, &common),
-                     common, "the entries", cholmod_l_free_triplet);
+  const Kept triplet(
+      cholmod_l_allocate_triplet(static_cast<std::size_t>(rows), static_cast<std::size_t>(columns),
+                                 entries.size(), 0, CHOLMOD_REAL, &common),
+      common, "the entries", cholmod_l_free_triplet);
   auto* i = static_cast<SuiteSparse_long*>(triplet.get()->i);
   auto* j = static_cast<SuiteSparse_long*>(triplet.get()->j);
   auto* x = static_cast<double*>(triplet.get()->x);
@@ -70,26 +71,29 @@ QrResult SparseQr::decompose(std::span<const Entry> entries, std::int64_t rows, 
                     cholmod_l_free_sparse);
   QrResult result;
   if (!null_space) {
-    result.rank = SuiteSparseQR<double>(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, matrix.get(), nullptr, nullptr, nullptr,
-                                        nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &common);
+    result.rank =
+        SuiteSparseQR<double>(SPQR_ORDERING_DEFAULT, tolerance, 0, 0, matrix.get(), nullptr, nullptr, nullptr,
+                              nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &common);
     if (result.rank < 0 || common.status < 0)
       throw SolverError(fmt::format("SuiteSparseQR failed with status {}{}", common.status,
                                     common.status == CHOLMOD_OUT_OF_MEMORY ? " (not enough memory)" : ""));
     return result;
   }
-  const Kept factors(SuiteSparseQR_factorize<double>(SPQR_ORDERING_DEFAULT, tolerance, matrix.get(), &common), common,
-                     "the decomposition", SuiteSparseQR_free<double>);
+  const Kept factors(SuiteSparseQR_factorize<double>(SPQR_ORDERING_DEFAULT, tolerance, matrix.get(), &common),
+                     common, "the decomposition", SuiteSparseQR_free<double>);
   result.rank = factors.get()->rank;
   const std::int64_t left = rows - result.rank;
   result.null_space.resize(rows, left);
   if (left == 0) return result;
-  const Kept units(cholmod_l_zeros(static_cast<std::size_t>(rows), static_cast<std::size_t>(left), CHOLMOD_REAL, &common),
-                   common, "the null space", cholmod_l_free_dense);
+  const Kept units(
+      cholmod_l_zeros(static_cast<std::size_t>(rows), static_cast<std::size_t>(left), CHOLMOD_REAL, &common),
+      common, "the null space", cholmod_l_free_dense);
   auto* unit = static_cast<double*>(units.get()->x);
   for (std::int64_t k = 0; k < left; ++k) unit[k * rows + result.rank + k] = 1;
-  const Kept beyond(SuiteSparseQR_qmult<double>(SPQR_QX, factors.get(), units.get(), &common), common, "the null space",
-                    cholmod_l_free_dense);
-  result.null_space = Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(beyond.get()->x), rows, left);
+  const Kept beyond(SuiteSparseQR_qmult<double>(SPQR_QX, factors.get(), units.get(), &common), common,
+                    "the null space", cholmod_l_free_dense);
+  result.null_space =
+      Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(beyond.get()->x), rows, left);
   return result;
 }
 
@@ -103,7 +107,8 @@ double largest_row_and_column(std::span<const Entry> entries, std::int64_t rows,
   return std::sqrt(*std::ranges::max_element(row) * *std::ranges::max_element(column));
 }
 
-double largest_image(std::span<const Entry> entries, std::int64_t rows, const Eigen::MatrixXd& columns, bool transposed) {
+double largest_image(std::span<const Entry> entries, std::int64_t rows, const Eigen::MatrixXd& columns,
+                     bool transposed) {
   if (columns.cols() == 0) return 0;
   Eigen::MatrixXd image = Eigen::MatrixXd::Zero(rows, columns.cols());
   for (const Entry& e : entries) {

@@ -17,7 +17,8 @@ struct Entry {
 
 struct QrResult {
   std::int64_t rank = 0;
-  /// [rows of what was decomposed × rows - rank] orthonormal: what is orthogonal to its columns. Empty unless asked for.
+  /// [rows of what was decomposed × rows - rank] orthonormal: what is orthogonal to its columns. Empty unless
+  /// asked for.
   Eigen::MatrixXd null_space;
 };
 
@@ -28,8 +29,8 @@ class SparseQr {
   SparseQr(const SparseQr&) = delete;
   SparseQr& operator=(const SparseQr&) = delete;
 
-  /// The matrix of these entries [rows × columns], those of one place added up, or its transpose. What is below the
-  /// tolerance counts as zero. Throws SolverError where it does not fit into memory.
+  /// The matrix of these entries [rows × columns], those of one place added up, or its transpose. What is
+  /// below the tolerance counts as zero. Throws SolverError where it does not fit into memory.
   QrResult decompose(std::span<const Entry> entries, std::int64_t rows, std::int64_t columns, bool transposed,
                      double tolerance, bool null_space);
 
@@ -42,6 +43,7 @@ class SparseQr {
 double largest_row_and_column(std::span<const Entry> entries, std::int64_t rows, std::int64_t columns);
 
 /// The largest |S x|, or |Sᵀ x|, of the columns x; `rows` are those of the result.
-double largest_image(std::span<const Entry> entries, std::int64_t rows, const Eigen::MatrixXd& columns, bool transposed);
+double largest_image(std::span<const Entry> entries, std::int64_t rows, const Eigen::MatrixXd& columns,
+                     bool transposed);
 
 }  // namespace eigengrain::spectrum

@@ -24,8 +24,9 @@ using assembly::StiffnessProduct;
 
 constexpr std::int64_t dense_low_modes = 300;
 
-// Rounding disturbs λ/(λ + σ)² of zero modes by 1e-16 (λ_max/σ)²/λ_max, at the usual σ = 1e-6 λ_max a ten thousandth
-// of 1/λ_max, at 1e-8 λ_max as much as the 1/λ of the fastest modes: both are far from those of the slowest ones.
+// Rounding disturbs λ/(λ + σ)² of zero modes by 1e-16 (λ_max/σ)²/λ_max, at the usual σ = 1e-6 λ_max a ten
+// thousandth of 1/λ_max, at 1e-8 λ_max as much as the 1/λ of the fastest modes: both are far from those of
+// the slowest ones.
 
 /// λ over λ_max of what counts as not resisted: rounding of zeros, with room.
 constexpr double floor_part = 1e-10;
@@ -166,7 +167,8 @@ LowModes low_modes(const LinearSystem& system, int count, double largest, const 
   LowModes result{.floor = floor};
   for (PetscInt k = 0; k < std::min<PetscInt>(converged, count); ++k) {
     EIGENGRAIN_PETSC(EPSGetEigenvector(solver.get(), k, first, nullptr));
-    if (judge(slow.stiffness(), first, result) && options.shapes) result.shape.push_back(mode_of(first, scale));
+    if (judge(slow.stiffness(), first, result) && options.shapes)
+      result.shape.push_back(mode_of(first, scale));
   }
   return sorted(result);
 }

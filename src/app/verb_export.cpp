@@ -20,10 +20,12 @@ void export_matrices(const Options& options) {
   if (formats.empty()) formats = {io::MatrixFormat::hdf5, io::MatrixFormat::csv};
   const Question question = read_question(options);
   const std::filesystem::path scene = options.scene;
-  const std::filesystem::path folder =
-      options.output.empty() ? std::filesystem::path(scene.stem().string() + "-matrices") : std::filesystem::path(options.output);
+  const std::filesystem::path folder = options.output.empty()
+                                           ? std::filesystem::path(scene.stem().string() + "-matrices")
+                                           : std::filesystem::path(options.output);
   const assembly::LinearSystem system(question.model);
-  const std::vector<std::filesystem::path> files = io::export_matrices(question.model, system, formats, folder);
+  const std::vector<std::filesystem::path> files =
+      io::export_matrices(question.model, system, formats, folder);
   nlohmann::ordered_json report{{"unknowns", system.unknowns.size()},
                                 {"contacts", system.elements.size()},
                                 {"files", nlohmann::ordered_json::array()}};

@@ -42,13 +42,14 @@ void print(const char* which, const ordered_json& modes) {
   if (modes.empty()) return;
   fmt::print("{} modes: angular frequency (rad/s), participation ratio, share of translations\n", which);
   for (const ordered_json& mode : modes)
-    fmt::print("  {:14.7g}  {:8.4f}  {:8.4f}\n", mode["omega"].get<double>(), mode["participation"].get<double>(),
-               mode["translation"].get<double>());
+    fmt::print("  {:14.7g}  {:8.4f}  {:8.4f}\n", mode["omega"].get<double>(),
+               mode["participation"].get<double>(), mode["translation"].get<double>());
 }
 
 ordered_json to_json(const Density& density) {
-  return {{"edges", density.edge},           {"count", density.count},       {"error", density.error},
-          {"resolution", density.resolution}, {"modes", density.modes},      {"products", density.products},
+  return {{"edges", density.edge},     {"count", density.count},
+          {"error", density.error},    {"resolution", density.resolution},
+          {"modes", density.modes},    {"products", density.products},
           {"seconds", density.seconds}};
 }
 
@@ -60,11 +61,12 @@ void print(const Density& density) {
     fmt::print("  {:12.5g}  {:9.2f}  {:.2g}\n", density.edge[k], density.count[k], density.error[k]);
 }
 
-void write_shapes(const assembly::Model& model, const LinearSystem& system, const std::vector<const Modes*>& parts,
-                  const std::string& file) {
+void write_shapes(const assembly::Model& model, const LinearSystem& system,
+                  const std::vector<const Modes*>& parts, const std::string& file) {
   std::vector<spectrum::BodyMotion> motions;
   for (const Modes* modes : parts)
-    for (const std::vector<double>& shape : modes->shape) motions.push_back(spectrum::motion_of_bodies(system, shape));
+    for (const std::vector<double>& shape : modes->shape)
+      motions.push_back(spectrum::motion_of_bodies(system, shape));
   std::vector<io::ModeShape> shapes;
   for (const spectrum::BodyMotion& motion : motions)
     shapes.push_back({motion.displacement, motion.rotation, motion.energy});
@@ -92,14 +94,16 @@ void modes(const Options& options) {
     report["highest"] = to_json(system, highest);
     print("lowest", report["lowest"]);
     print("highest", report["highest"]);
-    if (!options.modes_file.empty()) write_shapes(question.model, system, {&lowest, &highest}, options.modes_file);
+    if (!options.modes_file.empty())
+      write_shapes(question.model, system, {&lowest, &highest}, options.modes_file);
   }
   if (wanted.density) {
     note_interrupts();
-    const Density density = spectrum::density_of_states(system, {.moments = wanted.moments,
-                                                                 .vectors = wanted.vectors,
-                                                                 .bins = wanted.bins,
-                                                                 .interrupted = [] { return interrupted() != 0; }});
+    const Density density = spectrum::density_of_states(
+        system,
+        {.moments = wanted.moments, .vectors = wanted.vectors, .bins = wanted.bins, .interrupted = [] {
+           return interrupted() != 0;
+         }});
     report["density"] = to_json(density);
     print(density);
   }

@@ -31,13 +31,14 @@ void rigidity(const Options& options) {
                             {"excess", found.excess()},
                             {"counts_agree", found.counts_agree()},
                             {"seconds", found.seconds}});
-  fmt::print("{} with {} unknowns, {} with {} springs; {}\n", counted(found.bodies, "body", "bodies"), found.unknowns,
-             counted(found.contacts, "contact", "contacts"), found.springs.size(),
+  fmt::print("{} with {} unknowns, {} with {} springs; {}\n", counted(found.bodies, "body", "bodies"),
+             found.unknowns, counted(found.contacts, "contact", "contacts"), found.springs.size(),
              counted(found.rattlers, "rattler", "rattlers"));
   fmt::print("floppy modes {} ({} of them rigid motions of all), states of self-stress {}\n", found.floppy,
              found.trivial, found.self_stress);
-  fmt::print("springs beyond isostaticity {} ({:+.4g} a body)\n", found.excess(),
-             found.bodies > 0 ? static_cast<double>(found.excess()) / static_cast<double>(found.bodies) : 0.0);
+  fmt::print(
+      "springs beyond isostaticity {} ({:+.4g} a body)\n", found.excess(),
+      found.bodies > 0 ? static_cast<double>(found.excess()) / static_cast<double>(found.bodies) : 0.0);
   if (!found.counts_agree())
     fmt::print("the two decompositions do not agree (unknowns - springs = {}): singular values near zero\n",
                found.unknowns - std::ssize(found.springs));

@@ -10,13 +10,13 @@ namespace eigengrain::app {
 
 /// What modes and rigidity are asked for.
 struct SpectrumOptions {
-  int lowest = 10;          ///< how many
-  int highest = 10;         ///< how many
-  bool all = false;         ///< every mode there is
-  bool density = false;     ///< density of states by random vectors
-  int moments = 512;        ///< of it
-  int vectors = 8;          ///< of it
-  int bins = 50;            ///< of it
+  int lowest = 10;                ///< how many
+  int highest = 10;               ///< how many
+  bool all = false;               ///< every mode there is
+  bool density = false;           ///< density of states by random vectors
+  int moments = 512;              ///< of it
+  int vectors = 8;                ///< of it
+  int bins = 50;                  ///< of it
   std::string springs = "all";    ///< of rigidity
   bool without_rattlers = false;  ///< of rigidity
 };

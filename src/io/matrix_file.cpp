@@ -79,7 +79,9 @@ path write(const path& file, std::string_view bytes) {
 }
 
 path write_matrix_market(const Named& named, const path& folder) {
-  const auto wanted = [&](std::int64_t row, std::int64_t column) { return !named.symmetric || row >= column; };
+  const auto wanted = [&](std::int64_t row, std::int64_t column) {
+    return !named.symmetric || row >= column;
+  };
   std::int64_t count = 0;
   std::string body;
   for_each_number(named.matrix, [&](std::int64_t row, std::int64_t column, double value) {
@@ -87,10 +89,9 @@ path write_matrix_market(const Named& named, const path& folder) {
     ++count;
     fmt::format_to(std::back_inserter(body), "{} {} {:.17g}\n", row + 1, column + 1, value);
   });
-  const std::string head =
-      fmt::format("%%MatrixMarket matrix coordinate real {}\n% {}: {}\n{} {} {}\n",
-                  named.symmetric ? "symmetric" : "general", named.name, named.what, named.matrix.rows(),
-                  named.matrix.column_count(), count);
+  const std::string head = fmt::format("%%MatrixMarket matrix coordinate real {}\n% {}: {}\n{} {} {}\n",
+                                       named.symmetric ? "symmetric" : "general", named.name, named.what,
+                                       named.matrix.rows(), named.matrix.column_count(), count);
   return write(folder / (named.name + ".mtx"), head + body);
 }
 
@@ -117,8 +118,8 @@ path write_petsc(const Named& named, const path& folder) {
     append(values, value);
   });
   std::string bytes;
-  for (const std::int64_t head : {std::int64_t{matrix_class}, named.matrix.rows(), named.matrix.column_count(),
-                                  std::int64_t{count}})
+  for (const std::int64_t head :
+       {std::int64_t{matrix_class}, named.matrix.rows(), named.matrix.column_count(), std::int64_t{count}})
     append(bytes, static_cast<std::int32_t>(head));
   for (const std::int32_t numbers : length) append(bytes, numbers);
   return write(folder / (named.name + ".petsc"), bytes + columns + values);
@@ -132,7 +133,8 @@ std::vector<T> of_elements(const LinearSystem& system, const Of& of) {
   return result;
 }
 
-path write_hdf5(const Model& model, const LinearSystem& system, const std::vector<Named>& matrices, const path& folder) {
+path write_hdf5(const Model& model, const LinearSystem& system, const std::vector<Named>& matrices,
+                const path& folder) {
   const path file = folder / "matrices.h5";
   AtomicFile part(file);
   const h5::Silence silence;
@@ -147,8 +149,8 @@ path write_hdf5(const Model& model, const LinearSystem& system, const std::vecto
       hdf5.set(group, "what", std::string_view(named.what));
       hdf5.set(group, "rows", named.matrix.rows());
       hdf5.set(group, "columns", named.matrix.column_count());
-      hdf5.write_rows(group + "/data", h5::Number::f64, named.matrix.values.data(), named.matrix.columns.size(),
-                      block * block);
+      hdf5.write_rows(group + "/data", h5::Number::f64, named.matrix.values.data(),
+                      named.matrix.columns.size(), block * block);
       hdf5.write(group + "/indices", named.matrix.columns);
       hdf5.write(group + "/indptr", named.matrix.offsets);
     }
@@ -169,9 +171,12 @@ path write_hdf5(const Model& model, const LinearSystem& system, const std::vecto
     hdf5.add_group("/elements");
     hdf5.write("/elements/a", of_elements<std::int32_t>(system, [](const ContactElement& e) { return e.a; }));
     hdf5.write("/elements/b", of_elements<std::int32_t>(system, [](const ContactElement& e) { return e.b; }));
-    hdf5.write("/elements/normal", of_elements<Vec3>(system, [](const ContactElement& e) { return e.normal; }));
-    hdf5.write("/elements/lever_a", of_elements<Vec3>(system, [](const ContactElement& e) { return e.lever_a; }));
-    hdf5.write("/elements/lever_b", of_elements<Vec3>(system, [](const ContactElement& e) { return e.lever_b; }));
+    hdf5.write("/elements/normal",
+               of_elements<Vec3>(system, [](const ContactElement& e) { return e.normal; }));
+    hdf5.write("/elements/lever_a",
+               of_elements<Vec3>(system, [](const ContactElement& e) { return e.lever_a; }));
+    hdf5.write("/elements/lever_b",
+               of_elements<Vec3>(system, [](const ContactElement& e) { return e.lever_b; }));
     hdf5.add_group("/bodies");
     hdf5.write("/bodies/identity", model.bodies.identity);
     hdf5.write("/bodies/position", model.bodies.position);
@@ -200,7 +205,8 @@ path write_contacts(const Model& model, const path& folder) {
                    identity[static_cast<std::size_t>(c.ball_a)],
                    wall ? std::string() : fmt::format("{}", identity[static_cast<std::size_t>(c.ball_b)]),
                    wall ? fmt::format("{}", c.ball_b) : std::string(), c.image[0], c.image[1], c.image[2],
-                   numbers(c.normal), c.overlap, numbers(c.point), numbers(c.force), c.slides ? 1 : 0, c.rule);
+                   numbers(c.normal), c.overlap, numbers(c.point), numbers(c.force), c.slides ? 1 : 0,
+                   c.rule);
   }
   return write(folder / "contacts.csv", text);
 }
@@ -221,7 +227,8 @@ path write_unknowns(const Model& model, const LinearSystem& system, const path& 
     for (int i = 0; i < block; ++i)
       fmt::format_to(std::back_inserter(text), "{},{},{},{},{:.17g}\n", block * k + i,
                      model.bodies.identity[static_cast<std::size_t>(system.unknowns.body(k))],
-                     name[i + (system.unknowns.is_rotation(k) ? block : 0)], system.unknowns.is_fixed(k, i) ? 1 : 0,
+                     name[i + (system.unknowns.is_rotation(k) ? block : 0)],
+                     system.unknowns.is_fixed(k, i) ? 1 : 0,
                      system.mass[static_cast<std::size_t>(block * k + i)]);
   return write(folder / "unknowns.csv", text);
 }
@@ -232,8 +239,9 @@ MatrixFormat matrix_format(std::string_view name) {
   const auto found = std::ranges::find(matrix_format_names, name);
   if (found == std::end(matrix_format_names)) {
     const std::vector<std::string> known(std::begin(matrix_format_names), std::end(matrix_format_names));
-    throw InputError(fmt::format("\"{}\" is no format of matrices{}; there are mtx (MatrixMarket), petsc, h5 and csv",
-                                 name, did_you_mean(std::string(name), known)));
+    throw InputError(
+        fmt::format("\"{}\" is no format of matrices{}; there are mtx (MatrixMarket), petsc, h5 and csv",
+                    name, did_you_mean(std::string(name), known)));
   }
   return static_cast<MatrixFormat>(found - std::begin(matrix_format_names));
 }
@@ -241,7 +249,8 @@ MatrixFormat matrix_format(std::string_view name) {
 std::vector<path> export_matrices(const Model& model, const LinearSystem& system,
                                   std::span<const MatrixFormat> formats, const path& folder) {
   make_folder(folder);
-  const bool only_tables = std::ranges::all_of(formats, [](MatrixFormat f) { return f == MatrixFormat::csv; });
+  const bool only_tables =
+      std::ranges::all_of(formats, [](MatrixFormat f) { return f == MatrixFormat::csv; });
   const std::vector<Named> matrices = only_tables ? std::vector<Named>{} : matrices_of(system);
   std::vector<path> files;
   for (const MatrixFormat format : formats) switch (format) {

@@ -35,8 +35,7 @@ TEST(DensityOfStates, AModeIsCountedOnceWhereverItIs) {
 // What the random vectors err by: the same smearing of the known spectrum is what they would give without.
 TEST(DensityOfStates, ErrsByWhatItSays) {
   const System system = pressed_packing("60 mm");
-  const Density density =
-      density_of_states(system, {.moments = 128, .vectors = 24, .bins = 16, .seed = 3});
+  const Density density = density_of_states(system, {.moments = 128, .vectors = 24, .bins = 16, .seed = 3});
   const double step = cycle::scaled_block_bound(system, 10);
   const double bound = 4 / (step * step);
   ASSERT_NEAR(density.edge.back(), std::sqrt(bound), 1e-9 * std::sqrt(bound));
@@ -50,14 +49,15 @@ TEST(DensityOfStates, ErrsByWhatItSays) {
   }
   int beyond_two = 0;
   for (std::size_t k = 0; k < 16; ++k) {
-    std::printf("%8.2f +- %5.2f  smeared %8.2f  counted %5.0f\n", density.count[k], density.error[k], exact[k],
-                counted[k]);
+    std::printf("%8.2f +- %5.2f  smeared %8.2f  counted %5.0f\n", density.count[k], density.error[k],
+                exact[k], counted[k]);
     EXPECT_NEAR(density.count[k], exact[k], 4 * density.error[k] + 1e-9) << k;
     if (std::abs(density.count[k] - counted[k]) > 2 * density.error[k] + 0.5) ++beyond_two;
   }
   // One in twenty of normal errors is beyond two standard errors.
   EXPECT_LE(beyond_two, 2);
-  EXPECT_NEAR(std::accumulate(density.count.begin(), density.count.end(), 0.0), density.modes, 1e-9 * density.modes);
+  EXPECT_NEAR(std::accumulate(density.count.begin(), density.count.end(), 0.0), density.modes,
+              1e-9 * density.modes);
   EXPECT_EQ(density.products, 24 * 64);
 }
 

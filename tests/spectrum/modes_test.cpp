@@ -77,13 +77,16 @@ TEST(Modes, OfAChainHeldAtItsEndsAreWaves) {
   constexpr int balls = 150;  // between two that are fixed
   SceneBuilder builder({.kn = 1});
   for (int i = 0; i <= balls + 1; ++i)
-    builder.ball({(2 - 1e-12) * i, 0, 0}, 1, 1, i == 0 || i == balls + 1 ? fix_all : model::FixedComponents{});
+    builder.ball({(2 - 1e-12) * i, 0, 0}, 1, 1,
+                 i == 0 || i == balls + 1 ? fix_all : model::FixedComponents{});
   const System system(builder);
   const Modes low = lowest_modes(system, 5);
   const Modes high = highest_modes(system, 5);
   ASSERT_EQ(low.lambda.size(), 5U);
   for (int k = 0; k < 5; ++k) {
-    const auto wave = [&](int j) { return 4 * std::pow(std::sin(j * std::numbers::pi / (2 * (balls + 1))), 2); };
+    const auto wave = [&](int j) {
+      return 4 * std::pow(std::sin(j * std::numbers::pi / (2 * (balls + 1))), 2);
+    };
     EXPECT_NEAR(low.lambda[static_cast<std::size_t>(k)], wave(k + 1), 1e-11) << k;
     EXPECT_NEAR(high.lambda[static_cast<std::size_t>(k)], wave(balls - k), 1e-11) << k;
   }
@@ -93,7 +96,8 @@ TEST(Modes, OfAChainHeldAtItsEndsAreWaves) {
   EXPECT_NEAR(character.translation, 1, 1e-12);
 }
 
-// λ = (10/3) z k_s/m of all spheres of a cubic lattice that spin alike (closed form of rolling without translation).
+// λ = (10/3) z k_s/m of all spheres of a cubic lattice that spin alike (closed form of rolling without
+// translation).
 TEST(Modes, OfSpheresThatSpinAlikeDoNotTranslate) {
   const System system(make_lattice(simple_cubic(), {.kn = 1, .ks = 1}, {3, 3, 3}));
   const Modes high = highest_modes(system, 1);

@@ -6,10 +6,9 @@
 #include "spectrum/packings.hpp"
 #include "support/lattices.hpp"
 
+#include <Eigen/Dense>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <Eigen/Dense>
 
 #include <cmath>
 #include <numbers>
@@ -47,15 +46,16 @@ TEST(Moduli, OfFccAreItsClosedForms) {
   }
 }
 
-// SC of edge d: contacts along the axes only. C11 = k_n/d, C12 = 0. A shear of the cell by γ_yz slides contacts along y
-// and z by γ/2 each; balls may turn, which the contacts resist in the sum over y and z alike, so that C44 = k_s/2d.
+// SC of edge d: contacts along the axes only. C11 = k_n/d, C12 = 0. A shear of the cell by γ_yz slides
+// contacts along y and z by γ/2 each; balls may turn, which the contacts resist in the sum over y and z
+// alike, so that C44 = k_s/2d.
 TEST(Moduli, OfScAreItsClosedForms) {
   const Moduli found = elastic_moduli(make_lattice(simple_cubic(), {.kn = 1, .ks = 0.4}, {3, 3, 3}).build());
   EXPECT_LT(difference(found.stiffness, cubic(0.5, 0, 0.4 / 4)), 1e-11);
 }
 
-// BCC: four contacts a ball along diagonals in a volume of 4 d³/(3√3): without shear C11 = C12 = C44 = k_n/(√3 d). Balls
-// are centres of symmetry, so nothing moves beside the strain.
+// BCC: four contacts a ball along diagonals in a volume of 4 d³/(3√3): without shear C11 = C12 = C44 =
+// k_n/(√3 d). Balls are centres of symmetry, so nothing moves beside the strain.
 TEST(Moduli, OfBccWithoutShearAreCauchy) {
   const Moduli found = elastic_moduli(make_lattice(body_centred(), {.kn = 1}, {2, 2, 2}).build());
   const double c = 1 / (std::sqrt(3.0) * 2);
@@ -63,15 +63,16 @@ TEST(Moduli, OfBccWithoutShearAreCauchy) {
   EXPECT_LT(difference(found.affine, found.stiffness), 1e-11);
 }
 
-// Diamond is no lattice of centres of symmetry: its two sublattices move against each other, so that C44 falls.
+// Diamond is no lattice of centres of symmetry: its two sublattices move against each other, so that C44
+// falls.
 TEST(Moduli, OfDiamondRelaxInside) {
   const Moduli found = elastic_moduli(make_lattice(diamond(), {.kn = 1}, {1, 1, 1}).build());
   EXPECT_LT(found.stiffness(3, 3), 0.01 * found.affine(3, 3));  // without shear nothing holds the angles
   EXPECT_NEAR(found.bulk(), found.affine.topLeftCorner<3, 3>().sum() / 9, 1e-11 * found.bulk());
 }
 
-/// From positions alone: energy ½ q·K q of an affine strain and of what bodies move by beside it, minimised by a dense
-/// pseudo-inverse.
+/// From positions alone: energy ½ q·K q of an affine strain and of what bodies move by beside it, minimised
+/// by a dense pseudo-inverse.
 Mat6 dense_moduli(const System& system) {
   const model::Bodies& bodies = system.model.bodies;
   const model::PeriodicCell& cell = system.model.cell;
@@ -88,7 +89,8 @@ Mat6 dense_moduli(const System& system) {
         const double overlap = bodies.radius[a] + bodies.radius[b] - branch.norm();
         if (overlap <= 0) continue;
         const Vec3 normal = branch.normalized();
-        const Mat3 d = 1e5 * normal * normal.transpose() + 5e4 * (Mat3::Identity() - normal * normal.transpose());
+        const Mat3 d =
+            1e5 * normal * normal.transpose() + 5e4 * (Mat3::Identity() - normal * normal.transpose());
         Eigen::MatrixXd strain = Eigen::MatrixXd::Zero(3, 6 * n);
         strain.middleCols<3>(6 * a) -= Mat3::Identity();
         strain.middleCols<3>(6 * b) += Mat3::Identity();
@@ -138,7 +140,8 @@ TEST(Moduli, RefuseWhatHasNone) {
   SceneBuilder open({.kn = 1});
   open.ball({0, 0, 0}).ball({1.99, 0, 0});
   EXPECT_THROW(elastic_moduli(open.build()), InputError);
-  EXPECT_THROW(elastic_moduli(make_lattice(simple_cubic(), {.kn = 1}, {2, 2, 2}, fix_rotations).build()), InputError);
+  EXPECT_THROW(elastic_moduli(make_lattice(simple_cubic(), {.kn = 1}, {2, 2, 2}, fix_rotations).build()),
+               InputError);
 }
 
 }  // namespace

@@ -9,9 +9,8 @@
 #include "support/lattices.hpp"
 #include "support/random_bodies.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/SVD>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +28,8 @@ using spectrum::Springs;
 SceneBuilder tetrahedron(const test::Springs& springs) {
   SceneBuilder builder(springs);
   const double edge = (2 - 1e-9) / std::sqrt(8.0);
-  for (const Vec3& x : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}) builder.ball(edge * x);
+  for (const Vec3& x : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)})
+    builder.ball(edge * x);
   return builder;
 }
 
@@ -55,15 +55,16 @@ TEST(Rigidity, OfATetrahedronWithFrictionHasNoMechanism) {
   EXPECT_EQ(without.floppy, 6);
 }
 
-// A chain that repeats: N springs, N + 1 balls' worth of nothing but its own translation along it is resisted, and one
-// state of self-stress that runs around.
+// A chain that repeats: N springs, N + 1 balls' worth of nothing but its own translation along it is
+// resisted, and one state of self-stress that runs around.
 TEST(Rigidity, OfAChainThatRepeats) {
   const Rigidity found = rigidity(make_lattice(chain(), {.kn = 1}, {5, 1, 1}).build());
   EXPECT_EQ(found.unknowns, 15);
   EXPECT_EQ(found.springs.size(), 5U);
   EXPECT_EQ(found.self_stress, 1);
   EXPECT_EQ(found.floppy, 11);
-  // Its translations, and two rotations that nothing across the chain resists; a rotation about it moves nothing.
+  // Its translations, and two rotations that nothing across the chain resists; a rotation about it moves
+  // nothing.
   EXPECT_EQ(found.trivial, 5);
 }
 
@@ -95,8 +96,8 @@ std::int64_t dense_rank(const System& system) {
   };
   const Eigen::MatrixXd d = dense(assembly::elasticity_blocks(system));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> root(d);
-  Eigen::MatrixXd s = root.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() * root.eigenvectors().transpose() *
-                      dense(assembly::kinematic_blocks(system));
+  Eigen::MatrixXd s = root.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal() *
+                      root.eigenvectors().transpose() * dense(assembly::kinematic_blocks(system));
   const std::vector<double> scale = system.inverse_sqrt_mass();
   for (Eigen::Index k = 0; k < s.cols(); ++k) s.col(k) *= scale[static_cast<std::size_t>(k)];
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(s);
@@ -156,7 +157,8 @@ TEST(Rigidity, OfAPackingCountsItsZeroModes) {
       for (std::int32_t block = 0; block < system.unknowns.blocks(); ++block)
         for (int i = 0; i < 3; ++i) {
           const auto& rows = system.unknowns.is_rotation(block) ? whole.floppy_theta[k] : whole.floppy_u[k];
-          x[static_cast<std::size_t>(3 * block + i)] = rows[static_cast<std::size_t>(3 * system.unknowns.body(block) + i)];
+          x[static_cast<std::size_t>(3 * block + i)] =
+              rows[static_cast<std::size_t>(3 * system.unknowns.body(block) + i)];
         }
       product.apply(x, image);
       double square = 0;
@@ -164,7 +166,8 @@ TEST(Rigidity, OfAPackingCountsItsZeroModes) {
       EXPECT_LT(std::sqrt(square), 1e-11 * spectrum.maxCoeff()) << k;
     }
     const Rigidity held = rigidity(system.model, {.with_rattlers = false});
-    // It moves as a whole, and with friction each ball that has two contacts turns about the line through them.
+    // It moves as a whole, and with friction each ball that has two contacts turns about the line through
+    // them.
     EXPECT_EQ(held.floppy, 3 + balls_with_two_contacts(system.model));
     EXPECT_LT(held.bodies, whole.bodies + whole.set_aside);
     EXPECT_GT(held.excess(), 0);

@@ -26,11 +26,13 @@ inline constexpr std::string_view matrix_format_names[] = {"mtx", "petsc", "h5",
 /// Throws InputError for a name that is none, with the one that was probably meant.
 MatrixFormat matrix_format(std::string_view name);
 
-/// Writes the files of these formats into the folder, which is made; each appears whole or not at all. Returns their
-/// paths. Bodies are named by identity, as scenes and other results do; `unknowns` say which unknown is whose.
+/// Writes the files of these formats into the folder, which is made; each appears whole or not at all.
+/// Returns their paths. Bodies are named by identity, as scenes and other results do; `unknowns` say which
+/// unknown is whose.
 ///
 /// system  of the model. Throws InputError where a file cannot be written.
-std::vector<std::filesystem::path> export_matrices(const assembly::Model& model, const assembly::LinearSystem& system,
+std::vector<std::filesystem::path> export_matrices(const assembly::Model& model,
+                                                   const assembly::LinearSystem& system,
                                                    std::span<const MatrixFormat> formats,
                                                    const std::filesystem::path& folder);
 
