@@ -160,6 +160,17 @@ int run_program(int argc, char** argv) {
                    "hybrid (the default), or one alone: explicit (0.8 of PFC3D's step), tracked, scaled "
                    "(masses), fire, newton")
       ->type_name("NAME");
+  CLI::Option* load =
+      relaxing
+          ->add_option("--load", options.loads,
+                       "relax along a path: KEY=FROM..TO of the scene, displacement.WALL=[x, y, z] or "
+                       "strain=[[..], [..], [..]] of the periodic cell; may be repeated")
+          ->type_name("PATH")
+          ->allow_extra_args(false);
+  relaxing->add_option("--increments", options.increments, "of the path; default 10")
+      ->check(CLI::Range(1, 9999))
+      ->needs(load);
+  relaxing->add_flag("--continue", options.continues, "go on behind the last increment that was saved")->needs(load);
   relaxing
       ->add_option("--against", options.against,
                    "relax by this method too, e.g. explicit, and report how far the ends are apart")

@@ -9,6 +9,7 @@
 #include "equilibrium_report.hpp"
 #include "input.hpp"
 #include "interrupt.hpp"
+#include "loading.hpp"
 #include "progress.hpp"
 #include "relaxing.hpp"
 #include "state_report.hpp"
@@ -132,6 +133,7 @@ void relax(const Options& options) {
   std::optional<relaxation::Method> against;
   if (!options.against.empty()) against = method_of("--against", options.against);
   if (!options.petsc.empty()) petsc::set_options(options.petsc);
+  if (!options.loads.empty()) return relax_along(options);
   Input input = read_input(options);
   print_notes(input.state.settings);
   const std::optional<State> start = against ? std::optional<State>(input.state) : std::nullopt;

@@ -19,6 +19,9 @@ struct Options {
   double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
   std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
   std::string method = "hybrid";       ///< of relax: by name
+  std::vector<std::string> loads;      ///< of relax: a loading path; empty: none
+  int increments = 10;                 ///< of relax: of that path
+  bool continues = false;              ///< of relax: behind the last state of that path
   std::string against;                 ///< of relax: the method to compare the end with; empty: none
   bool tangent = false;                ///< of timestep: what the elastic stiffness leaves out
   bool certify = false;                ///< of timestep: prove the truth at any size
