@@ -40,6 +40,17 @@ struct Context {
   std::vector<std::string> linear_failures{};
   std::exception_ptr failure{};
 
+  bool stands_still() const {
+    const auto within = static_cast<std::size_t>(options.within);
+    if (options.progress == 0 || course.size() <= within) return false;
+    const auto least = [&](std::size_t count) {
+      return std::ranges::min_element(course.begin(), course.begin() + static_cast<std::ptrdiff_t>(count), {},
+                                      &NewtonMoment::ratio)
+          ->ratio;
+    };
+    return least(course.size()) > options.progress * least(course.size() - within);
+  }
+
   template <class Call>
   PetscErrorCode guarded(const Call& call) {
     try {
@@ -126,8 +137,7 @@ PetscErrorCode test_convergence(SNES solver, PetscInt iteration, PetscReal, Pets
       *reason = SNES_CONVERGED_FNORM_ABS;
     else if (c.unsolved)
       *reason = SNES_DIVERGED_LINEAR_SOLVE;
-    else if (iteration == c.options.within && c.ratio > c.options.progress * c.first_ratio &&
-             c.options.progress > 0)
+    else if (c.stands_still())
       *reason = SNES_DIVERGED_MAX_IT;
     else if (!std::isfinite(c.ratio) || c.ratio > hopeless * c.first_ratio)
       *reason = SNES_DIVERGED_DTOL;

@@ -13,9 +13,9 @@ struct NewtonOptions {
   double target = 1e-11;  ///< mean unbalanced ratio to stop at
   double reach = 0;       ///< up to which the state's contacts are listed, m
   int max_iterations = 30;
-  /// Residuals that have not fallen to this part within so many iterations are no use going on with.
-  double progress = 0;  ///< 0: they are
-  int within = 6;
+  /// It gives up where the least residual has not fallen to this part of what it was so many iterations ago.
+  double progress = 0;  ///< 0: it does not
+  int within = 5;
   /// Asked at every linear iteration: whether to give up; may be empty.
   std::function<bool()> interrupted{};
 };

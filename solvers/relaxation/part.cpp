@@ -154,6 +154,7 @@ Movers movers_of(const State& state, double force) {
     const bool falls = (push > 0 || turn > 0) && forces.force[i].isZero(0);
     if (falls || std::max(push, turn) > force) {
       movers.bodies.push_back(body);
+      movers.moving += std::max(push, turn);
     } else {
       pushes += push;
       turns += turn;

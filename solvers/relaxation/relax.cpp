@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -40,6 +41,8 @@ constexpr double newton_reach = 4;
 constexpr int most_lists = 20;
 /// Newton is asked for this part of what is wished, so that the commit's rounding does not undo it.
 constexpr double newton_margin = 0.3;
+/// Where Newton's method is at the right place, a few iterations bring it to less than this.
+constexpr double newton_progress = 0.2;
 /// Over the rounding floor; less cannot be asked of positions in doubles.
 constexpr double floor_margin = 1.5;
 
@@ -49,7 +52,10 @@ constexpr double rounding_margin = 2;
 /// Over the mean ratio, from where on a body counts as moving while others rest, and how many of all may do
 /// so for them to be cycled by themselves.
 constexpr double moving = 10;
-constexpr double few = 0.005;
+constexpr double few = 0.01;
+/// Ratios of the others from where on it pays to let them wait; above the last one only where the few are what is
+/// left to settle for the most part.
+constexpr std::array quiet_levels{1e-3, 1e-4, 1e-5};
 constexpr std::int64_t most_part_steps = 200000;  // at a time, before the whole is looked at
 
 /// What a method that moves bodies step by step begins from.
@@ -87,8 +93,10 @@ class Relaxation {
     try {
       go();
     } catch (...) {
-      halt(state_);
-      moving_parts.give_back(state_);
+      if (state_.model.bodies.size() > 0) {  // else no motion could begin, and the state is gone with it
+        halt(state_);
+        moving_parts.give_back(state_);
+      }
       throw;
     }
     halt(state_);
@@ -122,18 +130,25 @@ class Relaxation {
 
   void hybrid() {
     double hand_over = first_hand_over;
-    bool newton_failed = false;
+    bool newton_failed = false;  // the last time: cycles of the whole come first now
     while (!done() && !given_up()) {
       const double ratio = std::max(hand_over, least());
-      if (newton_failed || !may_hand_over(ratio, {})) approach(ratio);
+      std::optional<double> few_left;
+      if (newton_failed || !may_hand_over(ratio, {})) few_left = approach(ratio);
       if (done() || given_up()) break;
-      if (!settled_within(result_.end, ratio)) {
-        settle_movers(ratio);
+      if (few_left || !settled_within(result_.end, ratio)) {
+        settle_movers(few_left.value_or(quiet_levels.back()));
         continue;
       }
       // What is found is all that rounding allows, even if it is not enough; but over meshes a committed
       // state may touch other triangles than Newton's method knew.
       if (finish() && at_rest_within(result_.end, rounding_margin * least())) break;
+      // What a mover or two have kept it from may go on from here.
+      if (const auto level = few_move(state_); level && !newton_failed) {
+        newton_failed = true;
+        settle_movers(*level);
+        continue;
+      }
       newton_failed = true;
       if (mean_of(result_.end) <= least()) break;
       hand_over = std::min(ratio, mean_of(result_.end)) / 10;
@@ -221,24 +236,27 @@ class Relaxation {
     result_.explicit_seconds += watch_.seconds() - before;
   }
 
+  /// The same with the state, which comes back whatever happens: where it blows up, as it was before.
+  template <class Motion, class Over>
+  void move_state(Motion motion, std::string_view name, const State* before, const Over& over) {
+    try {
+      move_until(motion, name, over);
+    } catch (...) {
+      state_ = before != nullptr ? *before : motion.release();
+      throw;
+    }
+    state_ = motion.release();
+  }
+
   template <class Over>
   void descend(Method method, const Over& over) {
     const std::string_view name = name_of(method);
     if (done() || given_up()) return;
     if (method == Method::fire) {
-      Fire fire(std::move(state_));
-      move_until(fire, name, over);
-      state_ = fire.release();
+      move_state(Fire(std::move(state_)), name, nullptr, over);
     } else {
       const State before = proven(method) ? State{} : state_;
-      cycle::Cycle cycle = begin_cycle(state_, method);
-      try {
-        move_until(cycle, name, over);
-      } catch (...) {
-        state_ = proven(method) ? cycle.release() : before;
-        throw;
-      }
-      state_ = cycle.release();
+      move_state(begin_cycle(state_, method), name, proven(method) ? nullptr : &before, over);
       state_.model.bodies.mass_factor.clear();
     }
     halt(state_);
@@ -248,11 +266,14 @@ class Relaxation {
   /// Whether its steps cannot blow up.
   static bool proven(Method method) { return method != Method::explicit_cycle; }
 
-  /// Explicit cycles until Newton's method may be tried, or until only a few bodies move.
-  void approach(double ratio) {
+  /// Explicit cycles until Newton's method may be tried, or until only a few bodies move: then the ratio that the
+  /// others have.
+  std::optional<double> approach(double ratio) {
     std::optional<ContactCounts> before;
+    std::optional<double> few_left;
     descend(Method::tracked, [&](const State& state) {
-      if (few_move(state, ratio)) return true;
+      few_left = few_move(state);
+      if (done() || few_left) return true;
       if (!settled_within(result_.end, ratio)) {
         before.reset();
         return false;
@@ -263,9 +284,10 @@ class Relaxation {
       before = now;
       return may_hand_over(ratio, looks);
     });
+    return few_left;
   }
 
-  /// The force above which a body counts as moving at this ratio, N.
+  /// The force above which a body counts as moving while others have this ratio, N.
   double moving_force(double ratio) const { return moving * ratio * result_.end.mean_contact_force; }
 
   bool are_few(const Movers& movers) const {
@@ -273,11 +295,16 @@ class Relaxation {
            static_cast<double>(movers.bodies.size()) <= few * static_cast<double>(result_.end.bodies);
   }
 
-  /// Whether a few bodies are all that keeps the state from the ratio.
-  bool few_move(const State& state, double ratio) const {
-    const Movers movers = movers_of(state, moving_force(ratio));
-    return are_few(movers) &&
-           movers.rest <= ratio * static_cast<double>(result_.end.bodies) * result_.end.mean_contact_force;
+  /// The ratio of all others where a few bodies are what keeps the state from coming to rest.
+  std::optional<double> few_move(const State& state) const {
+    for (const double level : quiet_levels) {
+      const Movers movers = movers_of(state, moving_force(level));
+      const bool quiet =
+          movers.rest <= level * static_cast<double>(result_.end.bodies) * result_.end.mean_contact_force;
+      const bool matter = level == quiet_levels.back() || movers.moving > movers.rest;
+      if (quiet && matter && are_few(movers)) return level;
+    }
+    return std::nullopt;
   }
 
   /// Cycles of the bodies that move, and of them alone, until they rest too.
@@ -320,6 +347,7 @@ class Relaxation {
       wanted.target = std::max(newton_margin * options_.tolerance, floor_margin * result_.end.floor);
       wanted.reach = reach;
       wanted.interrupted = options_.interrupted;
+      if (options_.method == Method::hybrid) wanted.progress = newton_progress;
       const Stopwatch watch;
       const double until_now = watch_.seconds();
       const NewtonResult found = newton(state_, wanted);

@@ -14,7 +14,7 @@ double mean_of(const assembly::Balance& balance);
 /// Mean ratios are within this, and nothing is unsupported.
 bool at_rest_within(const assembly::Balance& balance, double ratio);
 
-/// And no body stands out so far that it must be falling or rolling.
+/// And no body stands out so far from the mean that it must be falling or rolling.
 bool settled_within(const assembly::Balance& balance, double ratio);
 
 /// How contacts stand at a moment: what changes while they open, close and slip.

@@ -185,8 +185,8 @@ INSTANTIATE_TEST_SUITE_P(LinearSolver, EachLinearMethod,
                                          LinearMethod::ilu_gmres, LinearMethod::jacobi_cg,
                                          LinearMethod::jacobi_gmres, LinearMethod::gamg, LinearMethod::hypre,
                                          LinearMethod::cholmod, LinearMethod::mumps),
-                         [](const auto& info) {
-                           std::string name(relaxation::name_of(info.param));
+                         [](const auto& method) {
+                           std::string name(relaxation::name_of(method.param));
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });

@@ -233,7 +233,7 @@ TEST_P(Matrix, ComesToRestFromEveryStart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Relax, Matrix, testing::ValuesIn(kinds()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& kind) { return kind.param.name; });
 
 }  // namespace
 }  // namespace eigengrain::test

@@ -45,7 +45,7 @@ TEST_P(EachMethod, FindsAnEquilibrium) {
 INSTANTIATE_TEST_SUITE_P(Relax, EachMethod,
                          testing::Values(Method::hybrid, Method::explicit_cycle, Method::tracked,
                                          Method::scaled, Method::fire),
-                         [](const auto& info) { return std::string(relaxation::name_of(info.param)); });
+                         [](const auto& method) { return std::string(relaxation::name_of(method.param)); });
 
 }  // namespace
 }  // namespace eigengrain::test
