@@ -48,6 +48,9 @@ double work_on_walls(const std::vector<assembly::WallLoad>& before,
 /// are others.
 constexpr std::int64_t steps_between_growing = 20;
 
+/// Bodies are looked at for whether they left their rooms at least this often.
+constexpr std::int64_t steps_between_looks = 1000;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -194,27 +197,31 @@ void Cycle::step() {
   const bool deforms = state_.model.cell.deforms();
   // Balls of clumps turn about its centre, and rooms shrink as radii grow.
   const bool looks_always = growth.any() || !state_.model.bodies.clumps.empty();
+  double slack = 0;
   if (deforms) {
     const assembly::CellStep cell = assembly::move_cell(state_, dt);
     move(duration, dt, cell);
     growth.apply();
-    slack_ = least_slack(cell.margin - state_.list.growth, cell);
+    slack = least_slack(cell.margin - state_.list.growth, cell);
+    slack_ = 0;  // of a cell at rest nothing is known yet
   } else {
     const assembly::CellAtRest cell;
     slack_ -= dt * move(duration, dt, cell);
     growth.apply();
-    // Looked at only where the fastest body could have left its room; beyond the rounding of the sum.
-    if (looks_always || !(slack_ > 1e-6 * half_skin))
+    // Looked at only where the fastest body could have left its room, beyond the rounding of the sum; and
+    // before the rounding of many small steps adds up.
+    if (looks_always || !(slack_ > 1e-6 * half_skin) || state_.step % steps_between_looks == 0)
       slack_ = least_slack(half_skin - state_.list.growth, cell);
+    slack = slack_;
   }
   bool expired = false;
   bool left_rooms = false;
   if (state_.guard) {
     // While it holds, the list does.
-    left_rooms = !(slack_ >= 0 && state_.list.wall_way <= state_.guard->wall_way);
+    left_rooms = !(slack >= 0 && state_.list.wall_way <= state_.guard->wall_way);
     expired = left_rooms && list_is_old();
   } else {
-    expired = !(slack_ >= 0 && state_.list.wall_way <= half_skin);
+    expired = !(slack >= 0 && state_.list.wall_way <= half_skin);
   }
   if (expired) list_anew();
   growth.count();

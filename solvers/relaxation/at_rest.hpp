@@ -12,8 +12,8 @@ namespace eigengrain::relaxation {
 void halt(assembly::State& state);
 
 /// Takes from a state what moves it: its clock, velocities that fixed components keep, motions of walls (but
-/// for what servos do to them) and cell, ramps of radii, scaled masses, α of bodies and scene. Equilibria are sought without; afterwards it
-/// all moves on.
+/// for what servos do to them) and cell, ramps of radii, scaled masses, α of bodies and scene. Equilibria are
+/// sought without; afterwards it all moves on.
 class SetAside {
  public:
   explicit SetAside(assembly::State& state);

@@ -27,10 +27,10 @@ std::size_t motion_of(const assembly::Model& model, std::int32_t wall) {
   for (std::size_t m = 0; m < model.wall_motions.size(); ++m)
     if (model.wall_motions[m].wall == wall) return m;
   const auto w = static_cast<std::size_t>(wall);
-  throw InputError(fmt::format("{} cannot be moved: states know only where walls are that may move; give it "
-                               "velocity: [0, 0, 0] in the scene",
-                               w < model.walls.size() ? model.walls[w].name
-                                                      : model.surfaces[w - model.walls.size()].name));
+  throw InputError(fmt::format(
+      "{} cannot be moved: states know only where walls are that may move; give it "
+      "velocity: [0, 0, 0] in the scene",
+      w < model.walls.size() ? model.walls[w].name : model.surfaces[w - model.walls.size()].name));
 }
 
 void carry(const State& state, const model::WallMotion& motion, const model::WallPose& pose,

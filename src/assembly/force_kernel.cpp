@@ -122,6 +122,7 @@ class BallSums {
   static constexpr std::size_t numbers = contact::state_numbers(Law::state_fields);
   /// A law without history means none of the increments.
   static constexpr bool moves = numbers > 0;
+  static_assert(moves || !contact::asks_rate<Law>);
 
   const contact::Pair& pair(std::int32_t contact) const {
     return group_.pairs[static_cast<std::size_t>(contact)];
@@ -158,8 +159,8 @@ class BallSums {
     const contact::GeometryOf<Real> geometry = find_geometry(chosen);
     const contact::MotionIn<Real> motion = find_motion(chosen, geometry);
     contact::ForceIn<Real> force;
-    commit(chosen, used, motion, force);
-    add(chosen, used, contact::end_forces(geometry, force));
+    const MaskOf<Real> acts = commit(chosen, used, motion, force);
+    add(chosen, used, acts, contact::end_forces(geometry, force));
   }
 
   contact::GeometryOf<Real> find_geometry(const std::int32_t* chosen) {
@@ -222,9 +223,9 @@ class BallSums {
     return motion;
   }
 
-  /// Forces after the motion, and states.
-  void commit(const std::int32_t* chosen, int used, const contact::MotionIn<Real>& motion,
-              contact::ForceIn<Real>& force) {
+  /// Forces after the motion, and states; which of the contacts act.
+  MaskOf<Real> commit(const std::int32_t* chosen, int used, const contact::MotionIn<Real>& motion,
+                      contact::ForceIn<Real>& force) {
     using Packed = typename Law::template StateIn<Real>;
     static_assert(std::is_empty_v<Packed> || sizeof(Packed) == numbers * sizeof(Real));
     std::array<double*, lanes> rows{};
@@ -237,9 +238,6 @@ class BallSums {
       gather<numbers>({rows[0], rows[1], rows[2], rows[3]}, reinterpret_cast<Real*>(&old));
     const MaskOf<Real> acts = law_.acts(motion, old);
     force = law_.evaluate(motion, old, next);
-    const Vector nothing = Vector::Zero();
-    force.force = select<Real>(acts, force.force, nothing);
-    force.moment = select<Real>(acts, force.moment, nothing);
     if constexpr (numbers > 0) {
       const Packed never;  // touched
       auto* const number = reinterpret_cast<Real*>(&next);
@@ -248,12 +246,15 @@ class BallSums {
       scatter<numbers>(number, rows, used);
     }
     for (int lane = 0; lane < used; ++lane) work_.active[chosen[lane]] = acts[lane] ? 1 : 0;
+    return acts;
   }
 
-  void add(const std::int32_t* chosen, int used, const contact::EndForcesIn<Real>& ends) {
-    const std::array<Row, lanes> force = rows_of(ends.force_b);
-    const std::array<Row, lanes> moment_a = rows_of(ends.moment_a);
-    const std::array<Row, lanes> moment_b = rows_of(ends.moment_b);
+  /// What does not act exerts nothing, not even where a body is nowhere (not a number).
+  void add(const std::int32_t* chosen, int used, MaskOf<Real> acts, const contact::EndForcesIn<Real>& ends) {
+    const Vector nothing = Vector::Zero();
+    const std::array<Row, lanes> force = rows_of(select<Real>(acts, ends.force_b, nothing));
+    const std::array<Row, lanes> moment_a = rows_of(select<Real>(acts, ends.moment_a, nothing));
+    const std::array<Row, lanes> moment_b = rows_of(select<Real>(acts, ends.moment_b, nothing));
     for (int lane = 0; lane < used; ++lane) {
       const contact::Pair& p = pair(chosen[lane]);
       BodySum& a = work_.sums[p.a - work_.first_body];

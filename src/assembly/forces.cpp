@@ -254,7 +254,12 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
   sum.force.resize(bodies);
   sum.moment.resize(turns_ ? bodies : 0);
   const contact::Placement placement = placement_in(model, trial);
-  if constexpr (commit) pack_bodies(model, trial);
+  if constexpr (commit) {
+    broken_.clear();
+    for (GroupPlan& plan : plans_)
+      for (std::vector<BondBreak>& found : plan.broken) found.clear();
+    pack_bodies(model, trial);
+  }
   for_chunks(std::ssize(sum.force), chunk_size_,
              [&](std::int64_t begin, std::int64_t end, std::int64_t index) {
                const Chunk chunk{index, begin, zeroed_sums(chunk_size_)};
@@ -268,14 +273,10 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
                }
              });
   add_foreign(sum);
-  if constexpr (commit) {
-    broken_.clear();
-    for (GroupPlan& plan : plans_)
-      for (std::vector<BondBreak>& found : plan.broken) {
+  if constexpr (commit)
+    for (const GroupPlan& plan : plans_)
+      for (const std::vector<BondBreak>& found : plan.broken)
         broken_.insert(broken_.end(), found.begin(), found.end());
-        found.clear();
-      }
-  }
 }
 
 void ContactForceSum::add_foreign(BodyForces& sum) const {

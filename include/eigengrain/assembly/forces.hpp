@@ -90,7 +90,7 @@ struct BodySum;
 /// residual. Threads share fixed chunks of bodies; a contact is evaluated once, in the chunk of its first
 /// body, and what it does to a body of another chunk is kept and added in the end. So every sum has one order
 /// (the order of the contacts), and the result is the same to the bit on any number of threads. Nothing is
-/// allocated after construction. Cost O(contacts).
+/// allocated after the first call. Cost O(contacts).
 class ContactForceSum {
  public:
   /// turns  whether moments are wanted

@@ -45,7 +45,7 @@ using ContactMotion = MotionIn<double>;
 /// is left out by the caller. Other laws are asked for one contact after the other.
 template <class L>
 inline constexpr bool takes_packs = requires {
-  typename L::template StateIn<double>;
+  requires std::is_same_v<typename L::State, typename L::template StateIn<double>>;
 };
 
 /// What a law in total form knows instead: where its sides are and how they are turned, not how they came

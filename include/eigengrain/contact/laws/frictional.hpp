@@ -62,6 +62,9 @@ struct ShearSprings {
   Real kept_slope = 0;  ///< d kept/dU, 1/m
 };
 
+/// Part of R* below which a difference of overlaps is rounding: the overlap itself is one of distances.
+inline constexpr double overlap_rounding = 1e-12;
+
 /// What a law found while it computed its force; laws built on it go on from there.
 template <class Real>
 struct Response {

@@ -72,7 +72,9 @@ class HertzSprings {
     const MaskOf<Real> unloads = motion.overlap < old.overlap;
     const Real kept = sqrt(motion.overlap / old.overlap);
     springs.kept = select(unloads, kept, Real(1));
-    springs.kept_slope = select(unloads, kept / (2 * motion.overlap), Real(0));
+    // At the committed overlap the slope has a kink, and rounding must not decide on which side of it one is.
+    springs.kept_slope = select(old.overlap - motion.overlap > overlap_rounding * motion.reduced_radius,
+                                kept / (2 * motion.overlap), Real(0));
     return springs;
   }
   /// k_s at the overlap of the committed state.

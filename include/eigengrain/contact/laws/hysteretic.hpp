@@ -48,7 +48,7 @@ class HystereticSprings {
                   select(unloading > 0.0, unloading, Real(0)));
   }
   double tangent(const ContactMotion& motion, Memory<double> old) const {
-    if (motion.overlap >= old.largest) return loading_;
+    if (!(old.largest - motion.overlap > overlap_rounding * motion.reduced_radius)) return loading_;
     return force(motion, old) > 0 ? unloading_ : 0.0;
   }
   static constexpr bool shear_follows_overlap = false;

@@ -67,8 +67,7 @@ class Rolling : public Base {
     const Real limit = limit_of(motion, response);
     const MaskOf<Real> sliding = slips(trial, limit);
     next.moment = trial;
-    if (!none(sliding))
-      next.moment = select<Real>(sliding, limit / sqrt(trial.squaredNorm()) * trial, trial);
+    if (!none(sliding)) next.moment = select<Real>(sliding, limit / sqrt(trial.squaredNorm()) * trial, trial);
     response.force.moment += next.moment;
     return response;
   }
