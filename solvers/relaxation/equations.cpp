@@ -238,9 +238,9 @@ void commit(State& state, const Displacement& of_bodies, const Displacement& of_
   bodies.orientation = assembly::turned_orientations(bodies, of_balls.rotation);
   assembly::BodyForces sum;
   assembly::ContactForceSum contacts(state.model, state.turns());
-  contacts.advance(state.model,
-                   {bodies.position, of_balls.translation, of_balls.rotation, 1.0, bodies.orientation, 0.0, walls},
-                   sum);
+  contacts.advance(
+      state.model,
+      {bodies.position, of_balls.translation, of_balls.rotation, 1.0, bodies.orientation, 0.0, walls}, sum);
   assembly::note_breaks(state, contacts.broken());
   state.force = std::move(sum.force);
   state.moment = std::move(sum.moment);

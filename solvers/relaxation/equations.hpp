@@ -89,7 +89,7 @@ class Equations {
   double reach_;         ///< of the list of contacts, m
   double longest_step_;  ///< of a body that nothing holds, m
   petsc::Vector scale_;
-  petsc::Vector mass_;           ///< of the unknowns: m and I/R²
+  petsc::Vector mass_;              ///< of the unknowns: m and I/R²
   assembly::Displacement moved_;    ///< of bodies: of a clump in the row of its holder
   assembly::Displacement carried_;  ///< of all balls, where there are clumps
   std::vector<Vec3> position_;
@@ -97,7 +97,8 @@ class Equations {
   assembly::BodyForces sum_;
 };
 
-/// The displacement of bodies, and of all balls, becomes a part of the state, with that of walls if they moved.
+/// The displacement of bodies, and of all balls, becomes a part of the state, with that of walls if they
+/// moved.
 void commit(assembly::State& state, const assembly::Displacement& of_bodies,
             const assembly::Displacement& of_balls, const assembly::WallStep* walls = nullptr);
 

@@ -191,8 +191,8 @@ void Fire::move() {
     choose_masses();
   }
   assembly::BodyForces sum{std::move(state_.force), std::move(state_.moment)};
-  forces_.advance(state_.model, {bodies.position, balls->translation, balls->rotation, 1.0, bodies.orientation},
-                  sum);
+  forces_.advance(state_.model,
+                  {bodies.position, balls->translation, balls->rotation, 1.0, bodies.orientation}, sum);
   state_.force = std::move(sum.force);
   state_.moment = std::move(sum.moment);
   if (!forces_.broken().empty()) assembly::note_breaks(state_, forces_.broken());

@@ -45,10 +45,10 @@ class Fire {
   model::TimestepChoice timestep_;
   std::vector<double> mass_factor_;
   assembly::ContactForceSum forces_;
-  assembly::BodyForces pull_;       ///< [bodies] F and M
-  assembly::Displacement rate_;     ///< [bodies] v and ω
-  assembly::Displacement push_;     ///< [bodies] accelerations a
-  assembly::Displacement moved_;    ///< of a step
+  assembly::BodyForces pull_;     ///< [bodies] F and M
+  assembly::Displacement rate_;   ///< [bodies] v and ω
+  assembly::Displacement push_;   ///< [bodies] accelerations a
+  assembly::Displacement moved_;  ///< of a step
   double dt_;
   double mixing_;
   int downhill_ = 0;  ///< steps since P was last negative

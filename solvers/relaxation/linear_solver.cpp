@@ -265,8 +265,7 @@ class LinearSolver::Engine {
   }
 
   std::string try_once(Vec b, Vec x, double tolerance) {
-    EIGENGRAIN_PETSC(
-        KSPSetTolerances(solver_.get(), tolerance, 0, PETSC_DEFAULT, most_iterations(method_)));
+    EIGENGRAIN_PETSC(KSPSetTolerances(solver_.get(), tolerance, 0, PETSC_DEFAULT, most_iterations(method_)));
     EIGENGRAIN_PETSC(VecZeroEntries(x));
     EIGENGRAIN_PETSC(KSPSolve(solver_.get(), b, x));
     PetscInt iterations = 0;

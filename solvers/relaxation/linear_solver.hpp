@@ -54,7 +54,7 @@ struct LinearOutcome {
 class LinearSolver {
  public:
   struct Options {
-    double contrast = 1;      ///< of the stiffnesses
+    double contrast = 1;  ///< of the stiffnesses
     /// Instead of methods_for; empty: those.
     std::vector<LinearMethod> methods{};
     /// The six rigid motions in the unknowns, for methods that ask; empty: none.

@@ -37,15 +37,15 @@ struct NewtonResult {
   std::vector<NewtonMoment> course;
   std::vector<std::string> linear_failures;  ///< of linear solvers, after which others took over
   std::string linear_method;                 ///< that solved the last system
-  std::string why;  ///< of an end without convergence, for the log
+  std::string why;                           ///< of an end without convergence, for the log
 };
 
 /// Newton's method (PETSc's SNES) for the equilibrium of the acting contacts, from the state as it stands:
 /// trial displacements from the committed state, the consistent unsymmetric tangent, full steps,
-/// linear solvers by size, contrast and symmetry (linear_solver.hpp). Floppy modes are held by a shift σM (pseudo-transient continuation
-/// with switched evolution relaxation: Kelley and Keyes, SIAM J. Numer. Anal. 35:508, 1998): σ is the largest
-/// acceleration that the residual gives a body over the longest step it may take, and vanishes with it. That
-/// step doubles while the residual falls, and shrinks where it grows.
+/// linear solvers by size, contrast and symmetry (linear_solver.hpp). Floppy modes are held by a shift σM
+/// (pseudo-transient continuation with switched evolution relaxation: Kelley and Keyes, SIAM J. Numer. Anal.
+/// 35:508, 1998): σ is the largest acceleration that the residual gives a body over the longest step it may
+/// take, and vanishes with it. That step doubles while the residual falls, and shrinks where it grows.
 ///
 /// No body leaves what the list of contacts knows. Where the result is converged or unfinished, the
 /// displacement is committed and forces are those of the new positions; otherwise the state is as it was.

@@ -25,7 +25,8 @@ constexpr model::FixedComponents held(63);
 void spread_over_clumps(const model::Clumps& clumps, std::vector<char>& marked) {
   for (std::int32_t c = 0; c < clumps.size(); ++c) {
     const std::span<const std::int32_t> balls = clumps.members(c);
-    if (std::none_of(balls.begin(), balls.end(), [&](std::int32_t ball) { return marked[ball] != 0; })) continue;
+    if (std::none_of(balls.begin(), balls.end(), [&](std::int32_t ball) { return marked[ball] != 0; }))
+      continue;
     for (const std::int32_t ball : balls) marked[ball] = 1;
   }
 }

@@ -12,8 +12,8 @@ namespace eigengrain::relaxation {
 /// nothing touches them. A clump is one body.
 struct Movers {
   std::vector<std::int32_t> bodies;  ///< rows, of clumps those of their holders, in storage order
-  double moving = 0;  ///< the same sum of these, N
-  double rest = 0;    ///< sum of the pushes on all others, or of their turns if that is more, N
+  double moving = 0;                 ///< the same sum of these, N
+  double rest = 0;  ///< sum of the pushes on all others, or of their turns if that is more, N
 };
 Movers movers_of(const assembly::State& state, double force);
 

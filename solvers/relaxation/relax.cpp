@@ -53,20 +53,19 @@ constexpr double rounding_margin = 2;
 /// so for them to be cycled by themselves.
 constexpr double moving = 10;
 constexpr double few = 0.01;
-/// Ratios of the others from where on it pays to let them wait; above the last one only where the few are what is
-/// left to settle for the most part.
+/// Ratios of the others from where on it pays to let them wait; above the last one only where the few are
+/// what is left to settle for the most part.
 constexpr std::array quiet_levels{1e-3, 1e-4, 1e-5};
 constexpr std::int64_t most_part_steps = 200000;  // at a time, before the whole is looked at
 
-/// What a method that moves bodies step by step begins from.
+/// Cycles by a method, of which the settings of the state know from now on.
 cycle::Cycle begin_cycle(State& state, Method method) {
-  model::Scene settings = state.settings;
+  model::Scene& settings = state.settings;
   settings.mass_scaling.reset();
   switch (method) {
     case Method::explicit_cycle:
-      settings.timestep = {model::TimestepPolicy::estimate,
-                           model::default_safety(model::TimestepPolicy::estimate),
-                           {}};
+      settings.timestep = {
+          model::TimestepPolicy::estimate, model::default_safety(model::TimestepPolicy::estimate), {}};
       break;
     case Method::scaled:
       settings.timestep = {model::TimestepPolicy::bound, explicit_safety, {}};
@@ -75,7 +74,8 @@ cycle::Cycle begin_cycle(State& state, Method method) {
     default:
       settings.timestep = {model::TimestepPolicy::tracked, explicit_safety, {}};
   }
-  return cycle::Cycle(std::move(state), cycle::policy_of(settings));
+  const cycle::TimestepPolicy policy = cycle::policy_of(settings);
+  return cycle::Cycle(std::move(state), policy);
 }
 
 class Relaxation {
@@ -158,8 +158,9 @@ class Relaxation {
   void descend_alone() {
     const bool walls_stand = options_.method == Method::fire;
     do {
-      descend(options_.method,
-              [&](const State&) { return walls_stand ? at_rest_within(result_.end, options_.tolerance) : done(); });
+      descend(options_.method, [&](const State&) {
+        return walls_stand ? at_rest_within(result_.end, options_.tolerance) : done();
+      });
       if (walls_stand && !given_up()) drive_walls();
     } while (walls_stand && !done() && !given_up());
   }
@@ -175,7 +176,9 @@ class Relaxation {
   bool given_up() const {
     return interrupted_ || result_.explicit_steps + result_.part_steps >= options_.max_steps;
   }
-  void ask_for_interrupts() { interrupted_ = interrupted_ || (options_.interrupted && options_.interrupted()); }
+  void ask_for_interrupts() {
+    interrupted_ = interrupted_ || (options_.interrupted && options_.interrupted());
+  }
 
   void report(const std::string& stage) const {
     if (options_.report)
@@ -205,7 +208,8 @@ class Relaxation {
 
   /// Whether Newton's method may be tried: soon where contacts have settled since the last look, and in any
   /// case at a low ratio.
-  bool may_hand_over(double ratio, const std::optional<std::pair<ContactCounts, ContactCounts>>& looks) const {
+  bool may_hand_over(double ratio,
+                     const std::optional<std::pair<ContactCounts, ContactCounts>>& looks) const {
     if (settled_within(result_.end, std::min(ratio, sure_hand_over))) return true;
     return looks && settled_within(result_.end, ratio) && stays(looks->first, looks->second);
   }
@@ -223,10 +227,11 @@ class Relaxation {
       sweeps_ += steps_between_looks;
       look(motion.state());
       if (!std::isfinite(mean_of(result_.end)))
-        throw SolverError(fmt::format(
-            "the {} method blew up after {} steps: its forces are not numbers any more; take --method hybrid, "
-            "whose steps are proven",
-            name, result_.explicit_steps));
+        throw SolverError(
+            fmt::format("the {} method blew up after {} steps: its forces are not numbers any more; take "
+                        "--method hybrid, "
+                        "whose steps are proven",
+                        name, result_.explicit_steps));
       now.mean = mean_of(result_.end);
       now.seconds = seconds + watch_.seconds() - before;
       note_moment(name, true, &motion.state());
@@ -266,8 +271,8 @@ class Relaxation {
   /// Whether its steps cannot blow up.
   static bool proven(Method method) { return method != Method::explicit_cycle; }
 
-  /// Explicit cycles until Newton's method may be tried, or until only a few bodies move: then the ratio that the
-  /// others have.
+  /// Explicit cycles until Newton's method may be tried, or until only a few bodies move: then the ratio that
+  /// the others have.
   std::optional<double> approach(double ratio) {
     std::optional<ContactCounts> before;
     std::optional<double> few_left;
@@ -390,10 +395,9 @@ class Relaxation {
                                 .stage = "newton"});
     if (!found.course.empty()) sweeps_ += found.course.back().sweeps;
     note_moment("newton", true);
-    report(
-        fmt::format("newton, {} iterations ({} linear{}){}", found.iterations, found.linear_iterations,
-                    found.linear_method.empty() ? "" : ", " + found.linear_method,
-                    found.converged ? "" : fmt::format(", ended at {:.1e}: {}", found.ratio, found.why)));
+    report(fmt::format("newton, {} iterations ({} linear{}){}", found.iterations, found.linear_iterations,
+                       found.linear_method.empty() ? "" : ", " + found.linear_method,
+                       found.converged ? "" : fmt::format(", ended at {:.1e}: {}", found.ratio, found.why)));
     for (const std::string& failure : found.linear_failures)
       if (options_.report) options_.report(fmt::format("  another linear solver took over from {}", failure));
     if (found.converged) note_method("newton");

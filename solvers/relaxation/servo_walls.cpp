@@ -20,8 +20,8 @@ using assembly::State;
 using assembly::WallStep;
 using petsc::Vector;
 
-/// Way of a wall for differences, over the reach of the list: far above the rounding of places, far below what
-/// opens contacts.
+/// Way of a wall for differences, over the reach of the list: far above the rounding of places, far below
+/// what opens contacts.
 constexpr double probe = 1e-5;
 /// Longest way of a wall at a time, and of a body, over the reach.
 constexpr double longest_way = 0.1;
@@ -89,7 +89,7 @@ double dot(Vec x, Vec y) {
 
 /// What bodies have to do with the walls at a moment.
 struct Response {
-  std::vector<Vector> push;   ///< [servos] G: forces on bodies per way of the wall
+  std::vector<Vector> push;    ///< [servos] G: forces on bodies per way of the wall
   std::vector<Vector> follow;  ///< [servos] K⁻¹ G
   Eigen::MatrixXd stiffness;   ///< S
 };

@@ -8,8 +8,8 @@
 namespace eigengrain::relaxation {
 namespace {
 
-/// Largest over mean ratio where bodies still fall or roll: there Newton is asked in vain. What stands out by no
-/// more than the least ratio from there does no harm.
+/// Largest over mean ratio where bodies still fall or roll: there Newton is asked in vain. What stands out by
+/// no more than the least ratio from there does no harm.
 constexpr double settled_max = 50;
 constexpr double least_mean = 1e-7;
 
@@ -27,8 +27,8 @@ bool at_rest_within(const assembly::Balance& balance, double ratio) {
 }
 
 bool settled_within(const assembly::Balance& balance, double ratio) {
-  return at_rest_within(balance, ratio) && std::max(balance.max, balance.moment_max) <=
-                                               settled_max * std::max(mean_of(balance), least_mean);
+  return at_rest_within(balance, ratio) &&
+         std::max(balance.max, balance.moment_max) <= settled_max * std::max(mean_of(balance), least_mean);
 }
 
 ContactCounts count_contacts(const assembly::Model& model) {

@@ -43,8 +43,8 @@ class Groups {
 /// Loads of some bodies together, and what holds them.
 struct Hold {
   Vec3 load = Vec3::Zero();
-  double sum = 0;           ///< of the magnitudes, N
-  std::uint8_t fixed = 0;   ///< components that some body is fixed in
+  double sum = 0;          ///< of the magnitudes, N
+  std::uint8_t fixed = 0;  ///< components that some body is fixed in
   bool at_wall = false;
   std::int64_t bodies = 0;
 
@@ -111,7 +111,8 @@ std::vector<Floating> floating_groups(const State& state) {
     if (groups.of(row) != row || !holds[row].gives_way()) return;
     floating.push_back({.bodies = holds[row].bodies, .first = bodies.identity[row]});
   });
-  std::ranges::stable_sort(floating, [](const Floating& l, const Floating& r) { return l.bodies > r.bodies; });
+  std::ranges::stable_sort(floating,
+                           [](const Floating& l, const Floating& r) { return l.bodies > r.bodies; });
   return floating;
 }
 
@@ -120,10 +121,11 @@ void require_support(const State& state) {
   Hold all;
   for_each_body(state.model.bodies, [&](std::int32_t row) { all.add(state, row); });
   if (!all.gives_way()) return;
-  throw SolverError(fmt::format(
-      "there is no equilibrium: loads of ({:g}, {:g}, {:g}) N in all move the bodies, and the scene has neither a "
-      "wall nor a body that is fixed in their direction; add one, or set gravity: [0, 0, 0]",
-      all.load.x(), all.load.y(), all.load.z()));
+  throw SolverError(
+      fmt::format("there is no equilibrium: loads of ({:g}, {:g}, {:g}) N in all move the bodies, and the "
+                  "scene has neither a "
+                  "wall nor a body that is fixed in their direction; add one, or set gravity: [0, 0, 0]",
+                  all.load.x(), all.load.y(), all.load.z()));
 }
 
 }  // namespace eigengrain::relaxation

@@ -38,7 +38,8 @@ nlohmann::ordered_json to_json(const ContactStatuses& statuses) {
 }
 
 std::string text_of(const ContactStatuses& statuses) {
-  std::string text = fmt::format("contacts: {} stick, {} slip", grouped(statuses.sticking), grouped(statuses.slipping));
+  std::string text =
+      fmt::format("contacts: {} stick, {} slip", grouped(statuses.sticking), grouped(statuses.slipping));
   if (statuses.bonded > 0) text += fmt::format(", {} bonded", grouped(statuses.bonded));
   text += fmt::format(", {} open within the list", grouped(statuses.open));
   if (statuses.rattlers > 0) text += fmt::format("; {}", counted(statuses.rattlers, "rattler", "rattlers"));

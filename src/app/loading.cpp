@@ -19,8 +19,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
@@ -34,8 +34,9 @@ namespace {
 namespace fs = std::filesystem;
 using assembly::State;
 
-constexpr std::string_view example = "write KEY=FROM..TO, e.g. \"gravity=[0, 0, -9.81]..[1.7, 0, -9.66]\", "
-                                     "displacement.WALL=[x, y, z] or strain=[[..], [..], [..]]";
+constexpr std::string_view example =
+    "write KEY=FROM..TO, e.g. \"gravity=[0, 0, -9.81]..[1.7, 0, -9.66]\", "
+    "displacement.WALL=[x, y, z] or strain=[[..], [..], [..]]";
 
 /// All numbers of a text, whatever brackets and commas stand between; none where something else does.
 std::optional<std::vector<double>> numbers_in(std::string_view text) {
@@ -76,7 +77,8 @@ std::string add_to(LoadingPath& path, const std::string& text) {
     if (!wall || wall->size() != 1 || (*wall)[0] < 0 || (*wall)[0] != std::floor((*wall)[0]))
       return "the wall is not a number from 0";
     if (!numbers || numbers->size() != 3) return "a displacement has three numbers";
-    path.walls.push_back({static_cast<std::int32_t>((*wall)[0]), Vec3((*numbers)[0], (*numbers)[1], (*numbers)[2])});
+    path.walls.push_back(
+        {static_cast<std::int32_t>((*wall)[0]), Vec3((*numbers)[0], (*numbers)[1], (*numbers)[2])});
     return "";
   }
   const std::size_t dots = value.find("..");
@@ -106,9 +108,10 @@ class LoadTable {
  public:
   LoadTable(const Input& input, const fs::path& file, int kept) : file_(file) {
     if (kept > 0) return;
-    std::string head = "increment,part,ratio,steps,iterations,linear_iterations,contacts,slipping,bonded,"
-                       "mean_contact_force [N],elastic [J],volume [m3],stress_xx [Pa],stress_yy [Pa],stress_zz [Pa],"
-                       "stress_yz [Pa],stress_xz [Pa],stress_xy [Pa]";
+    std::string head =
+        "increment,part,ratio,steps,iterations,linear_iterations,contacts,slipping,bonded,"
+        "mean_contact_force [N],elastic [J],volume [m3],stress_xx [Pa],stress_yy [Pa],stress_zz [Pa],"
+        "stress_yz [Pa],stress_xz [Pa],stress_xy [Pa]";
     const std::size_t walls = input.state.model.wall_count();
     for (std::size_t w = 0; w < walls; ++w)
       head += fmt::format(",wall_{0}_fx [N],wall_{0}_fy [N],wall_{0}_fz [N]", w);
@@ -129,7 +132,8 @@ class LoadTable {
       for (const measures::ActingContact& c : measures::acting_contacts(state.model))
         sum -= c.force * c.branch.transpose();
       const Mat3 s = sum / cell.volume();
-      line += fmt::format(",{},{},{},{},{},{},{}", cell.volume(), s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2), s(0, 1));
+      line += fmt::format(",{},{},{},{},{},{},{}", cell.volume(), s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2),
+                          s(0, 1));
     } else {
       line += ",,,,,,,";
     }
@@ -152,7 +156,9 @@ class LoadTable {
 
  private:
   void require(const std::ofstream& out) const {
-    if (!out) throw InputError(fmt::format("{} cannot be written; name another folder with --output", file_.string()));
+    if (!out)
+      throw InputError(
+          fmt::format("{} cannot be written; name another folder with --output", file_.string()));
   }
   fs::path file_;
 };
@@ -178,8 +184,9 @@ void apply(const LoadingPath& path, double from, double to, Input& input, const 
 void check_path(const LoadingPath& path, const State& state) {
   for (const WallPath& wall : path.walls)
     if (wall.wall >= static_cast<std::int32_t>(state.model.wall_count()))
-      throw InputError(fmt::format("--load displacement.{}: there is no such wall; walls are numbered from 0 to {}",
-                                   wall.wall, static_cast<int>(state.model.wall_count()) - 1));
+      throw InputError(
+          fmt::format("--load displacement.{}: there is no such wall; walls are numbered from 0 to {}",
+                      wall.wall, static_cast<int>(state.model.wall_count()) - 1));
   if (path.strain && !state.model.cell.any())
     throw InputError("--load strain: the scene has no periodic cell; add periodic, or move walls");
 }
@@ -229,10 +236,11 @@ void relax_along(const Options& options) {
     if (!result.converged) {
       const fs::path nearest = input.folder / (input.stem + "-load-nearest.h5");
       io::write_state(input.state, nearest);
-      throw SolverError(fmt::format("no equilibrium within {:g} was found at {:g} of the path (ratio {:.1e} after {}); "
-                                    "the nearest state is in {}, the last equilibrium is increment {}",
-                                    options.tolerance, part(k), result.end.mean,
-                                    counted(result.explicit_steps, "step", "steps"), nearest.string(), k - 1));
+      throw SolverError(
+          fmt::format("no equilibrium within {:g} was found at {:g} of the path (ratio {:.1e} after {}); "
+                      "the nearest state is in {}, the last equilibrium is increment {}",
+                      options.tolerance, part(k), result.end.mean,
+                      counted(result.explicit_steps, "step", "steps"), nearest.string(), k - 1));
     }
     input.state.breaks.clear();
     table.add(k, part(k), result, input.state);

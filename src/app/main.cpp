@@ -170,7 +170,8 @@ int run_program(int argc, char** argv) {
   relaxing->add_option("--increments", options.increments, "of the path; default 10")
       ->check(CLI::Range(1, 9999))
       ->needs(load);
-  relaxing->add_flag("--continue", options.continues, "go on behind the last increment that was saved")->needs(load);
+  relaxing->add_flag("--continue", options.continues, "go on behind the last increment that was saved")
+      ->needs(load);
   relaxing
       ->add_option("--against", options.against,
                    "relax by this method too, e.g. explicit, and report how far the ends are apart")

@@ -45,11 +45,12 @@ relaxation::Method method_of(const std::string& option, const std::string& name)
 std::string text_of_floating(const RelaxResult& result) {
   if (result.floating.empty()) return "";
   const relaxation::Floating& largest = result.floating.front();
-  return fmt::format(": {} that neither a wall nor a held body touches {} under its loads, the largest of {} "
-                     "(with ball {})",
-                     counted(std::ssize(result.floating), "group of bodies", "groups of bodies"),
-                     result.floating.size() == 1 ? "moves" : "move", counted(largest.bodies, "body", "bodies"),
-                     largest.first);
+  return fmt::format(
+      ": {} that neither a wall nor a held body touches {} under its loads, the largest of {} "
+      "(with ball {})",
+      counted(std::ssize(result.floating), "group of bodies", "groups of bodies"),
+      result.floating.size() == 1 ? "moves" : "move", counted(largest.bodies, "body", "bodies"),
+      largest.first);
 }
 
 std::string text_of_servo(const RelaxResult& result, double tolerance) {
@@ -81,7 +82,8 @@ RelaxResult relax_or_save(State& state, const Options& options, relaxation::Meth
 }
 
 bool has_servo(const State& state) {
-  return std::ranges::any_of(state.model.wall_motions, [](const auto& motion) { return motion.servo.has_value(); });
+  return std::ranges::any_of(state.model.wall_motions,
+                             [](const auto& motion) { return motion.servo.has_value(); });
 }
 
 /// The same start by another method, and how far its end is from this one: as text, and in the report.

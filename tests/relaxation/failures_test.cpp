@@ -63,7 +63,7 @@ TEST(RelaxFailures, LetsLoadsBalanceEachOther) {
 TEST(RelaxFailures, CountsGroupsThatFloat) {
   SceneBuilder builder({.kn = 1e4, .tension = false});
   builder.plane({0, 0, 0}, {0, 0, 1}).gravity({0, 0, -10});
-  builder.ball({0, 0, 0.999});                                             // stands
+  builder.ball({0, 0, 0.999});                                              // stands
   builder.ball({10, 0, 1e6}).ball({10, 0, 1e6 + 1.99}).ball({20, 0, 1e6});  // a pair and one fall
   assembly::State state = cycle::start(builder.scene());
   const RelaxResult result = relaxation::relax(state, {.max_steps = 100});

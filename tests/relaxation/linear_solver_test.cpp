@@ -1,11 +1,11 @@
-// Linear solvers of Newton's systems, each alone on matrices of packings that are hard for some of them, and the
-// order in which one takes over from another.
+// Linear solvers of Newton's systems, each alone on matrices of packings that are hard for some of them, and
+// the order in which one takes over from another.
 #include "relaxation/linear_solver.hpp"
 
 #include "eigengrain/assembly/linear_system.hpp"
 
-#include "petsc/stiffness_matrix.hpp"
 #include "packings.hpp"
+#include "petsc/stiffness_matrix.hpp"
 #include "support/scenes.hpp"
 
 #include <gmock/gmock.h>
@@ -37,8 +37,7 @@ struct Case {
 const std::vector<Case>& cases() {
   static const std::vector<Case> all{
       {"in a box", {}},
-      {"on a floor",
-       {.walls = "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]"}},
+      {"on a floor", {.walls = "walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]"}},
       {"with weak shear", {.contacts = "law: linear, kn: 1.0e5, ks: 1.0e3, friction: 0.5"}},
       {"bonded",
        {.contacts = "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5, bond: {kind: parallel, kn: 5.0e9, "
@@ -92,9 +91,9 @@ class Problem {
   Vec b() const { return b_.get(); }
 
   LinearOutcome solve(std::vector<LinearMethod> methods) {
-    LinearSolver solver(mat(), {.contrast = contrast,
-                                .methods = std::move(methods),
-                                .rigid_motions = [this] { return rigid_motions(); }});
+    LinearSolver solver(mat(), {.contrast = contrast, .methods = std::move(methods), .rigid_motions = [this] {
+                                  return rigid_motions();
+                                }});
     Vector x;
     EIGENGRAIN_PETSC(VecDuplicate(b(), x.put()));
     return solver.solve(b(), x.get(), tolerance);

@@ -1,6 +1,7 @@
-// Every kind of scene from every kind of start comes to rest: at 1e-10 of the mean contact force, or three times what
-// the rounding of places makes of it, with nothing unsupported; the explicit cycle stays there, and what walls bear is
-// what bodies weigh. With EIGENGRAIN_LONG_TESTS=1 at 3,000 and 10,000 bodies instead of 300 (tests/bench/relax_matrix.sh).
+// Every kind of scene from every kind of start comes to rest: at 1e-10 of the mean contact force, or three
+// times what the rounding of places makes of it, with nothing unsupported; the explicit cycle stays there,
+// and what walls bear is what bodies weigh. With EIGENGRAIN_LONG_TESTS=1 at 3,000 and 10,000 bodies instead
+// of 300 (tests/bench/relax_matrix.sh).
 #include "eigengrain/assembly/acting.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
@@ -46,21 +47,22 @@ const std::vector<Kind>& kinds() {
       {.name = "frictionless", .contacts = "law: linear, kn: 1.0e5", .friction = 0},
       {.name = "frictional", .contacts = "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5"},
       {.name = "bonded",
-       .contacts = "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5, bond: {kind: parallel, kn: 2.0e9, ks: 1.0e9, "
-                   "gap: 0.1 mm}"},
+       .contacts =
+           "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5, bond: {kind: parallel, kn: 2.0e9, ks: 1.0e9, "
+           "gap: 0.1 mm}"},
       {.name = "clumps", .contacts = "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5", .clumps = true},
-      {.name = "hertz", .contacts = "law: hertz, effective_young: 5.0e7, effective_shear: 2.0e7, friction: 0.5"},
-      {.name = "periodic",
-       .contacts = "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5",
-       .periodic = true},
+      {.name = "hertz",
+       .contacts = "law: hertz, effective_young: 5.0e7, effective_shear: 2.0e7, friction: 0.5"},
+      {.name = "periodic", .contacts = "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5", .periodic = true},
       {.name = "servo", .contacts = "law: linear, kn: 1.0e5, ks: 5.0e4, friction: 0.5", .servo = true}};
   return all;
 }
 
 std::string balls_of(double fraction, double edge, double height) {
-  return fmt::format("balls: [{{fill: {}, fraction: {}, radius: {}, seed: 3, material: grain, box: {{min: [0, 0, 0], max: "
-                     "[{}, {}, {}]}}}}]\n",
-                     fraction < 0.4 ? "random" : "dense", fraction, radius, edge, edge, height);
+  return fmt::format(
+      "balls: [{{fill: {}, fraction: {}, radius: {}, seed: 3, material: grain, box: {{min: [0, 0, 0], max: "
+      "[{}, {}, {}]}}}}]\n",
+      fraction < 0.4 ? "random" : "dense", fraction, radius, edge, edge, height);
 }
 
 /// Dumbbells and bent triples, turned at random, on a grid on which none touch.
@@ -72,18 +74,19 @@ std::string clumps_of(int count, double edge) {
   for (int k = 0; k < count; ++k) {
     const Vec3 axis = random_vector(random).normalized();
     const double step = edge / across;
-    instances[k % 2] += fmt::format(
-        "      - {{position: [{}, {}, {}], axis: [{}, {}, {}], angle: {}}}\n", step * (k % across + 0.5),
-        step * (k / across % across + 0.5), pitch * (k / across / across + 0.6), axis.x(), axis.y(), axis.z(),
-        std::uniform_real_distribution<double>(0, 6)(random));
+    instances[k % 2] += fmt::format("      - {{position: [{}, {}, {}], axis: [{}, {}, {}], angle: {}}}\n",
+                                    step * (k % across + 0.5), step * (k / across % across + 0.5),
+                                    pitch * (k / across / across + 0.6), axis.x(), axis.y(), axis.z(),
+                                    std::uniform_real_distribution<double>(0, 6)(random));
   }
-  return fmt::format("clumps:\n"
-                     "  - balls: [{{at: [0, 0, 0], radius: {0}}}, {{at: [{0}, 0, 0], radius: {0}}}]\n"
-                     "    material: grain\n    instances:\n{1}"
-                     "  - balls: [{{at: [0, 0, 0], radius: {0}}}, {{at: [{2}, 0, 0], radius: {2}}}, {{at: [0, {2}, 0], "
-                     "radius: {2}}}]\n"
-                     "    material: grain\n    instances:\n{3}",
-                     radius, instances[0], 0.8 * radius, instances[1]);
+  return fmt::format(
+      "clumps:\n"
+      "  - balls: [{{at: [0, 0, 0], radius: {0}}}, {{at: [{0}, 0, 0], radius: {0}}}]\n"
+      "    material: grain\n    instances:\n{1}"
+      "  - balls: [{{at: [0, 0, 0], radius: {0}}}, {{at: [{2}, 0, 0], radius: {2}}}, {{at: [0, {2}, 0], "
+      "radius: {2}}}]\n"
+      "    material: grain\n    instances:\n{3}",
+      radius, instances[0], 0.8 * radius, instances[1]);
 }
 
 /// count bodies in a box, a cell that repeats sideways, or under a lid that is pressed down; loose or dense.
@@ -92,22 +95,26 @@ model::Scene scene_of(const Kind& kind, int count, bool loose) {
   const double edge = std::cbrt(volume / 0.6);
   const double fraction = loose ? 0.25 : 0.6;
   const double height = volume / fraction / (edge * edge);
-  std::string text = "gravity: [0, 0, -9.81]\nmaterials: [{name: grain, density: 2500}]\ndamping: {local: 0.7}\n"
-                     "timestep: {policy: bound}\n";
+  std::string text =
+      "gravity: [0, 0, -9.81]\nmaterials: [{name: grain, density: 2500}]\ndamping: {local: 0.7}\n"
+      "timestep: {policy: bound}\n";
   text += "contacts: [{between: [grain, grain], " + kind.contacts + "}]\n";
   text += kind.clumps ? clumps_of(count, edge) : balls_of(fraction, edge, height);
   if (kind.periodic)
-    text += fmt::format("periodic: {{box: [{}, {}, 1], axes: [x, y]}}\n"
-                        "walls: [{{plane: {{point: [0, 0, 0], normal: [0, 0, 1]}}, material: grain}}]\n",
-                        edge, edge);
+    text += fmt::format(
+        "periodic: {{box: [{}, {}, 1], axes: [x, y]}}\n"
+        "walls: [{{plane: {{point: [0, 0, 0], normal: [0, 0, 1]}}, material: grain}}]\n",
+        edge, edge);
   else
-    text += fmt::format("walls:\n  - {{box: {{min: [0, 0, 0], max: [{}, {}, 10], open: [+z]}}, material: grain}}\n", edge,
-                        edge);
+    text += fmt::format(
+        "walls:\n  - {{box: {{min: [0, 0, 0], max: [{}, {}, 10], open: [+z]}}, material: grain}}\n", edge,
+        edge);
   // Ten times the weight, so that no ball is loose below it.
   if (kind.servo)
-    text += fmt::format("  - plane: {{point: [0, 0, {}], normal: [0, 0, -1]}}\n    material: grain\n"
-                        "    servo: {{force: {}, max_speed: 0.1}}\n",
-                        height, 10 * volume * 2500 * 9.81);
+    text += fmt::format(
+        "  - plane: {{point: [0, 0, {}], normal: [0, 0, -1]}}\n    material: grain\n"
+        "    servo: {{force: {}, max_speed: 0.1}}\n",
+        height, 10 * volume * 2500 * 9.81);
   return io::read_scene_text(text, ".", kind.name);
 }
 
@@ -153,7 +160,8 @@ void expect_rest(assembly::State& state) {
                                          << " of a few, " << result.newton_iterations << " iterations";
   EXPECT_EQ(result.end.unsupported, 0);
   EXPECT_LE(result.missing_force, wished);
-  // Each body misses the ratio times the mean contact force, and bodies are some hundred or thousand contacts high.
+  // Each body misses the ratio times the mean contact force, and bodies are some hundred or thousand contacts
+  // high.
   EXPECT_LE(momentum_error(state), wished * static_cast<double>(result.end.bodies));
   fmt::print("    {} steps, {} of a few, {} of Newton ({} linear), {:.1e}, {:.2g} s\n", result.explicit_steps,
              result.part_steps, result.newton_iterations, result.linear_iterations, mean_of(result.end),

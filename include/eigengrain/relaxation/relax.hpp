@@ -39,11 +39,12 @@ std::optional<Method> find_method(std::string_view name);
 
 /// How far a relaxation is at a moment.
 struct Moment {
-  double seconds = 0;         ///< since the start
-  std::int64_t sweeps = 0;    ///< over the contacts: a step, a residual and a product with a matrix are one each
-  double mean = 0;            ///< the larger mean unbalanced ratio, of forces or moments
-  double max = 0;             ///< the same of the largest; 0 within Newton's method
-  std::string_view stage;     ///< what led there
+  double seconds = 0;  ///< since the start
+  std::int64_t sweeps =
+      0;                   ///< over the contacts: a step, a residual and a product with a matrix are one each
+  double mean = 0;         ///< the larger mean unbalanced ratio, of forces or moments
+  double max = 0;          ///< the same of the largest; 0 within Newton's method
+  std::string_view stage;  ///< what led there
 };
 
 struct RelaxOptions {
@@ -62,8 +63,8 @@ struct RelaxOptions {
 /// A part of the way: all of one kind that came one after the other.
 struct RelaxStage {
   std::string_view name;
-  std::int64_t steps = 0;   ///< of the cycle or of FIRE
-  int iterations = 0;       ///< of Newton's method
+  std::int64_t steps = 0;  ///< of the cycle or of FIRE
+  int iterations = 0;      ///< of Newton's method
   int linear_iterations = 0;
   double seconds = 0;
   double mean = 0;  ///< ratio at its end
@@ -84,12 +85,12 @@ struct RelaxResult {
   int linear_iterations = 0;
   int attempts = 0;  ///< of Newton's method
   std::vector<RelaxStage> stages;
-  std::vector<Moment> course;              ///< every hundred steps, and every iteration of Newton's method
-  std::string linear_method;               ///< that solved Newton's last system
+  std::vector<Moment> course;                ///< every hundred steps, and every iteration of Newton's method
+  std::string linear_method;                 ///< that solved Newton's last system
   std::vector<std::string> linear_failures;  ///< of solvers that broke down, after which others took over
-  std::vector<Floating> floating;  ///< at the end, where there is no equilibrium; the largest first
+  std::vector<Floating> floating;            ///< at the end, where there is no equilibrium; the largest first
   assembly::Balance start;
-  assembly::Balance end;  ///< as the explicit cycle evaluates it
+  assembly::Balance end;     ///< as the explicit cycle evaluates it
   double missing_force = 0;  ///< at the end: of a servo wall, the largest, as a part of its wanted force
   double seconds = 0;
   double explicit_seconds = 0;

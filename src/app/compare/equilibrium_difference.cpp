@@ -73,21 +73,26 @@ EquilibriumDifference difference_of(const State& first, const State& second) {
     }
   }
   if (sum > 0)
-    result.forces = std::sqrt(squares / static_cast<double>(count)) / (sum / static_cast<double>(left.size()));
+    result.forces =
+        std::sqrt(squares / static_cast<double>(count)) / (sum / static_cast<double>(left.size()));
   const Mat3 whole = moment_of_forces(left);
   if (whole.norm() > 0) result.stress = (whole - moment_of_forces(right)).norm() / whole.norm();
   return result;
 }
 
 nlohmann::ordered_json to_json(const EquilibriumDifference& difference) {
-  return {{"mean_distance", difference.mean_distance}, {"max_distance", difference.max_distance},
-          {"forces", difference.forces},               {"stress", difference.stress},
-          {"only_first", difference.only_first},       {"only_second", difference.only_second}};
+  return {{"mean_distance", difference.mean_distance},
+          {"max_distance", difference.max_distance},
+          {"forces", difference.forces},
+          {"stress", difference.stress},
+          {"only_first", difference.only_first},
+          {"only_second", difference.only_second}};
 }
 
 std::string text_of(const EquilibriumDifference& difference) {
   return fmt::format(
-      "bodies are {:.1e} of a radius apart (at most {:.1e}), contact forces {:.1e} of their mean, stress {:.1e}; {} "
+      "bodies are {:.1e} of a radius apart (at most {:.1e}), contact forces {:.1e} of their mean, stress "
+      "{:.1e}; {} "
       "and {} contacts act in one of them alone",
       difference.mean_distance, difference.max_distance, difference.forces, difference.stress,
       grouped(difference.only_first), grouped(difference.only_second));

@@ -30,9 +30,10 @@ constexpr double least_drawn = 1e-16;
 
 report::Look look_of(std::size_t method) {
   using namespace report::colour;
-  constexpr std::array looks{report::Look{Mark::square, ink, false},       report::Look{Mark::circle, blue, true},
-                             report::Look{Mark::diamond, green, true},     report::Look{Mark::triangle, purple, true},
-                             report::Look{Mark::cross, grey, false},       report::Look{Mark::circle, vermilion, false}};
+  constexpr std::array looks{
+      report::Look{Mark::square, ink, false},   report::Look{Mark::circle, blue, true},
+      report::Look{Mark::diamond, green, true}, report::Look{Mark::triangle, purple, true},
+      report::Look{Mark::cross, grey, false},   report::Look{Mark::circle, vermilion, false}};
   return looks[method % looks.size()];
 }
 
@@ -94,14 +95,14 @@ void add_pictures(const RelaxedScene& scene, Page& page) {
   };
   const auto seconds = [](const Moment& moment) { return moment.seconds; };
   const auto sweeps = [](const Moment& moment) { return static_cast<double>(moment.sweeps); };
-  add_curves(scene, "seconds", "unbalanced ratio", "The larger mean unbalanced ratio, of forces or moments.", page,
-             course(seconds));
+  add_curves(scene, "seconds", "unbalanced ratio", "The larger mean unbalanced ratio, of forces or moments.",
+             page, course(seconds));
   add_curves(scene, "sweeps over the contacts", "unbalanced ratio",
              "The same against work: a step, a residual, or a product with a matrix is one sweep.", page,
              course(sweeps));
   add_curves(scene, "sweeps over the contacts", "distance from the end / radius",
-             "Root mean square distance of the bodies from where the method ended, over the mean radius.", page,
-             [](const MethodRun& run) {
+             "Root mean square distance of the bodies from where the method ended, over the mean radius.",
+             page, [](const MethodRun& run) {
                std::vector<report::Point> points;
                for (const Distance& d : run.distances)
                  points.push_back({static_cast<double>(d.at.sweeps), d.distance});
@@ -144,10 +145,11 @@ void add_table(const RelaxedScene& scene, Page& page) {
     row.push_back(run.from_explicit ? Cell{number_text(run.from_explicit->mean_distance)} : missing);
     table.rows.push_back(std::move(row));
   }
-  page.table(table,
-             "From the explicit method's end: root mean square difference of contact forces over their mean, and of "
-             "places over the mean radius. Friction admits many equilibria, so they need not be the same. ·: not "
-             "reached.");
+  page.table(
+      table,
+      "From the explicit method's end: root mean square difference of contact forces over their mean, and of "
+      "places over the mean radius. Friction admits many equilibria, so they need not be the same. ·: not "
+      "reached.");
 }
 
 std::string verdict_of(const RelaxedScene& scene, double tolerance) {
@@ -164,10 +166,11 @@ std::string verdict_of(const RelaxedScene& scene, double tolerance) {
     const auto slow = plain->reaches(ratio);
     const auto fast = best->reaches(ratio);
     if (!slow || !fast || !(fast->seconds > 0) || fast->sweeps == 0) return;
-    text += fmt::format("To {} the default method takes {} times fewer seconds and {} times fewer sweeps than "
-                        "explicit cycles at 0.8 of PFC3D's estimate. ",
-                        what, number_text(slow->seconds / fast->seconds),
-                        number_text(static_cast<double>(slow->sweeps) / static_cast<double>(fast->sweeps)));
+    text += fmt::format(
+        "To {} the default method takes {} times fewer seconds and {} times fewer sweeps than "
+        "explicit cycles at 0.8 of PFC3D's estimate. ",
+        what, number_text(slow->seconds / fast->seconds),
+        number_text(static_cast<double>(slow->sweeps) / static_cast<double>(fast->sweeps)));
   };
   times(coarse, "a ratio of 0.001");
   if (plain->result.converged && best->result.converged)
@@ -182,12 +185,15 @@ std::string verdict_of(const RelaxedScene& scene, double tolerance) {
 
 std::string page_of(const RelaxationReport& report) {
   Page page("Ways to an equilibrium", fmt::format("eigengrain {}", EIGENGRAIN_VERSION));
-  page.paragraph(fmt::format(
-      "Each method alone from the same start to a mean unbalanced ratio of {:.0e}. explicit: cycles at 0.8 of PFC3D's "
-      "estimate of the step; tracked: at the tracked step; scaled: with masses scaled body by body; fire: FIRE with "
-      "these masses; newton: Newton's method alone; hybrid: the default, tracked cycles and then Newton's method. "
-      "Cycles have a local damping of 0.7.",
-      report.tolerance));
+  page.paragraph(
+      fmt::format("Each method alone from the same start to a mean unbalanced ratio of {:.0e}. explicit: "
+                  "cycles at 0.8 of PFC3D's "
+                  "estimate of the step; tracked: at the tracked step; scaled: with masses scaled body by "
+                  "body; fire: FIRE with "
+                  "these masses; newton: Newton's method alone; hybrid: the default, tracked cycles and then "
+                  "Newton's method. "
+                  "Cycles have a local damping of 0.7.",
+                  report.tolerance));
   for (const RelaxedScene& scene : report.scenes) {
     page.section(scene.name);
     if (!scene.skipped.empty()) {

@@ -48,8 +48,8 @@ struct RelaxationReport {
   std::vector<RelaxedScene> scenes;
 };
 
-/// All methods on all scenes, with a line for each on the error stream. Throws InputError with the mistakes of
-/// all scenes before the first is run.
+/// All methods on all scenes, with a line for each on the error stream. Throws InputError with the mistakes
+/// of all scenes before the first is run.
 RelaxationReport compare_relaxations(const Options& options);
 
 void print(const RelaxationReport& report);

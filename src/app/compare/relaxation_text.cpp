@@ -55,9 +55,8 @@ ordered_json json_of(const MethodRun& run) {
   for (const Moment& moment : run.result.course) course.push_back(json_of(moment));
   ordered_json& distances = json["distances"] = ordered_json::array();
   for (const Distance& distance : run.distances)
-    distances.push_back({{"seconds", distance.at.seconds},
-                         {"sweeps", distance.at.sweeps},
-                         {"distance", distance.distance}});
+    distances.push_back(
+        {{"seconds", distance.at.seconds}, {"sweeps", distance.at.sweeps}, {"distance", distance.distance}});
   return json;
 }
 
@@ -71,8 +70,8 @@ void print(const RelaxationReport& report) {
     }
     fmt::print("{}: {}, {}\n", scene.name, counted(scene.bodies, "body", "bodies"),
                counted(scene.contacts, "acting contact", "acting contacts"));
-    fmt::print("{:>10} {:>9} {:>9} {:>10} {:>10} {:>9} {:>6} {:>8} {:>9}  {}\n", "method", "s to 1e-3", "s to end",
-               "sweeps", "sweeps", "steps", "Newton", "linear", "ratio", "forces from explicit");
+    fmt::print("{:>10} {:>9} {:>9} {:>10} {:>10} {:>9} {:>6} {:>8} {:>9}  {}\n", "method", "s to 1e-3",
+               "s to end", "sweeps", "sweeps", "steps", "Newton", "linear", "ratio", "forces from explicit");
     for (const MethodRun& run : scene.runs) {
       if (!run.failure.empty()) {
         fmt::print("{:>10} {}\n", run.name, run.failure);

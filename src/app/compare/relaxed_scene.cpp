@@ -90,12 +90,12 @@ void relax_all_ways(const Options& options, RelaxedScene& scene) {
     scene.runs.push_back(run_method(method, state, options));
     MethodRun& run = scene.runs.back();
     if (interrupted() != 0) throw Interrupted{interrupted()};
-    fmt::print(stderr, "  {}: {}\n", run.name,
-               !run.failure.empty() ? run.failure
-                                    : fmt::format("{} in {:.2g} s, ratio {:.1e}",
-                                                  run.result.converged ? "at rest" : "NOT at rest",
-                                                  run.result.seconds,
-                                                  std::max(run.result.end.mean, run.result.end.moment_mean)));
+    fmt::print(
+        stderr, "  {}: {}\n", run.name,
+        !run.failure.empty()
+            ? run.failure
+            : fmt::format("{} in {:.2g} s, ratio {:.1e}", run.result.converged ? "at rest" : "NOT at rest",
+                          run.result.seconds, std::max(run.result.end.mean, run.result.end.moment_mean)));
     if (!run.failure.empty() || !run.result.converged) continue;
     if (method == Method::explicit_cycle)
       explicit_end = std::move(state);
