@@ -34,6 +34,8 @@ SetAside::SetAside(State& state)
       spin_(state.model.bodies.spin),
       of_clumps_(state.model.bodies.clumps.velocity),
       clump_spin_(state.model.bodies.clumps.spin),
+      timestep_(state.settings.timestep),
+      mass_scaling_(std::exchange(state.settings.mass_scaling, {})),
       local_damping_(std::exchange(state.model.local_damping, explicit_damping)),
       damping_(std::exchange(state.model.bodies.damping, {})),
       mass_factor_(std::exchange(state.model.bodies.mass_factor, {})),
@@ -75,6 +77,8 @@ void SetAside::give_back(State& state) {
   }
   state.time = time_;
   state.step = step_;
+  state.settings.timestep = timestep_;
+  state.settings.mass_scaling = mass_scaling_;
   state.model.local_damping = local_damping_;
   bodies.damping = std::move(damping_);
   bodies.mass_factor = std::move(mass_factor_);

@@ -2,7 +2,9 @@
 
 #include "eigengrain/assembly/state.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 /// What moves a state in time, and is no part of an equilibrium.
@@ -12,8 +14,8 @@ namespace eigengrain::relaxation {
 void halt(assembly::State& state);
 
 /// Takes from a state what moves it: its clock, velocities that fixed components keep, motions of walls (but
-/// for what servos do to them) and cell, ramps of radii, scaled masses, α of bodies and scene. Equilibria are
-/// sought without; afterwards it all moves on.
+/// for what servos do to them) and cell, ramps of radii, the choice of the step, scaled masses, α of bodies
+/// and scene. Equilibria are sought without; afterwards it all moves on.
 class SetAside {
  public:
   explicit SetAside(assembly::State& state);
@@ -26,6 +28,8 @@ class SetAside {
   std::vector<Vec3> spin_;
   std::vector<Vec3> of_clumps_;
   std::vector<Vec3> clump_spin_;
+  model::TimestepChoice timestep_;
+  std::optional<model::MassScaling> mass_scaling_;
   double local_damping_;
   std::vector<double> damping_;
   std::vector<double> mass_factor_;

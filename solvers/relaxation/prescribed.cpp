@@ -104,9 +104,9 @@ void strain_cell(State& state, const Mat3& strain) {
   for (const Vec3& x : bodies.position) farthest = std::max(farthest, (strain * (x - cell.origin)).norm());
   farthest = std::max(farthest, (strain * cell.edges).norm());
   const int parts = parts_of(farthest, state.list.skin);
-  // (1 + E) as a product of equal factors, to the order that a factor is exact.
-  const Mat3 part = strain / parts;
   for (int k = 0; k < parts; ++k) {
+    // From (1 + k/n E) H to (1 + (k + 1)/n E) H.
+    const Mat3 part = strain / parts * (Mat3::Identity() + k * strain / parts).inverse();
     Displacement moved = at_rest(state);
     for (std::int32_t row = 0; row < bodies.size(); ++row) {
       if (bodies.clumps.owner(row) != row) continue;

@@ -58,9 +58,9 @@ constexpr double few = 0.01;
 constexpr std::array quiet_levels{1e-3, 1e-4, 1e-5};
 constexpr std::int64_t most_part_steps = 200000;  // at a time, before the whole is looked at
 
-/// What a method that moves bodies step by step begins from.
+/// Cycles by a method, of which the settings of the state know from now on.
 cycle::Cycle begin_cycle(State& state, Method method) {
-  model::Scene settings = state.settings;
+  model::Scene& settings = state.settings;
   settings.mass_scaling.reset();
   switch (method) {
     case Method::explicit_cycle:
@@ -74,7 +74,8 @@ cycle::Cycle begin_cycle(State& state, Method method) {
     default:
       settings.timestep = {model::TimestepPolicy::tracked, explicit_safety, {}};
   }
-  return cycle::Cycle(std::move(state), cycle::policy_of(settings));
+  const cycle::TimestepPolicy policy = cycle::policy_of(settings);
+  return cycle::Cycle(std::move(state), policy);
 }
 
 class Relaxation {

@@ -36,7 +36,8 @@ class RelaxTest(ProgramTest):
         return self.succeed("relax", self.scene(text), "--output", self.folder, *arguments)
 
     def press(self, servo):
-        return BED.replace("damping", f"  - {{plane: {{point: [0, 0, 32 mm], normal: [0, 0, -1]}}, material: grain, {servo}}}\ndamping")
+        lid = f", {{plane: {{point: [0, 0, 32 mm], normal: [0, 0, -1]}}, material: grain, {servo}}}]"
+        return BED.replace("open: [+z]}, material: grain}]", "open: [+z]}, material: grain}" + lid)
 
     def test_takes_methods_by_name(self):
         for method in ["hybrid", "explicit", "tracked", "scaled", "fire"]:
@@ -56,11 +57,9 @@ class RelaxTest(ProgramTest):
         self.assertIn("contacts: ", printed)
         # The floor bears the weight.
         weight = sum(reaction["force"][2] for reaction in report["reactions"])
-        balls = report["contacts"]
         self.assertLess(weight, 0)
         self.assertEqual(sum(stage["steps"] for stage in report["stages"]), report["steps"] + report["part_steps"])
         self.assertEqual(sum(stage["iterations"] for stage in report["stages"]), report["iterations"])
-        self.assertGreater(balls, 0)
 
     def test_says_how_far_another_method_ends(self):
         printed, report = self.relax(BED, "--against", "tracked", "--tolerance", "1e-9")
@@ -70,8 +69,12 @@ class RelaxTest(ProgramTest):
 
     def test_names_what_no_equilibrium_can_hold(self):
         free = BED[:BED.index("walls:")]
-        self.assertIn("neither a wall nor a body that is fixed", self.fail_with("relax", self.scene(free)))
-        beside = BED.replace("walls:", "  - {position: [1, 0, 1], radius: 5 mm, material: grain}\nwalls:")
+        self.assertIn("neither a wall nor a body that is fixed", self.fail_with("relax", self.scene(free), "--output", self.folder))
+        beside = BED[:BED.index("walls:")] + """
+  - {position: [0, 0, 1000], radius: 5 mm, material: grain}
+walls: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}, material: grain}]
+damping: {local: 0.7}
+"""
         said = self.fail_with("relax", self.scene(beside), "--output", self.folder, "--max-steps", "2000")
         self.assertIn("1 group of bodies that neither a wall nor a held body touches moves", said)
         self.assertIn("bed-relaxed.h5", said)
