@@ -15,7 +15,7 @@ struct EquilibriumDifference {
   double max_distance = 0;   ///< the same of the one that is farthest
   double forces = 0;  ///< root mean square difference of contact forces over the mean contact force; one that
                       ///< acts in one of them alone counts in full
-  double stress = 0;            ///< |Σ F ⊗ ℓ of one - of the other| over that of the first
+  double stress = 0;  ///< |Σ F ⊗ ℓ of one - of the other| over that of the first
   std::int64_t only_first = 0;  ///< contacts that act in one of them alone
   std::int64_t only_second = 0;
 };
