@@ -26,13 +26,11 @@ namespace {
 
 using cycle::Cycle;
 
-model::Scene scene_of(const std::string& more,
-                      const std::string& law = "law: linear, kn: 1e5, ks: 5e4, friction: 0.5") {
+model::Scene scene_of(const std::string& more) {
   return io::read_scene_text(R"(
 gravity: [1, 0, -9.81]
 materials: [{name: grain, density: 2500}]
-contacts: [{between: [grain, grain], )" +
-                                 law + R"(}]
+contacts: [{between: [grain, grain], law: linear, kn: 1e5, ks: 5e4, friction: 0.5}]
 balls: [{fill: random, fraction: 0.25, radius: 5 mm, box: {min: [0, 0, 0], max: [0.08, 0.08, 0.3]}, seed: 2, material: grain}]
 walls: [{box: {min: [0, 0, 0], max: [0.08, 0.08, 0.3], open: [+z]}, material: grain}]
 damping: {local: 0.5}
@@ -40,10 +38,31 @@ damping: {local: 0.5}
                              ".", "scene.yaml");
 }
 
+/// A dense bed on which gravity begins to act: hardly anybody moves far.
+model::Scene bed_of(const std::string& law) {
+  return io::read_scene_text(R"(
+gravity: [1.7, 0, -9.66]
+materials: [{name: grain, density: 2500}]
+contacts: [{between: [grain, grain], )" +
+                                 law +
+                                 R"(}]
+balls: [{fill: dense, mean_overlap: 3e-4, radius: 5 mm, box: {min: [0, 0, 0], max: [0.06, 0.06, 0.06]}, seed: 2, material: grain}]
+walls: [{box: {min: [0, 0, 0], max: [0.06, 0.06, 0.2], open: [+z]}, material: grain}]
+damping: {local: 0.7}
+timestep: {policy: tracked}
+)",
+                             ".", "scene.yaml");
+}
+
+const std::string linear = "law: linear, kn: 1e5, ks: 5e4, friction: 0.5";
 const std::string tracked = "timestep: {policy: tracked}\n";
 
 TEST(Tracked, GoesOnToTheBitFromAFile) {
-  expect_to_continue(scene_of(tracked), 1500, {0, 1, 700, 737, 1203});
+  expect_to_continue(scene_of(tracked), 1500, {0, 1, 700});
+}
+
+TEST(Tracked, GoesOnToTheBitWhereSomeBodiesGotOtherRooms) {
+  expect_to_continue(bed_of(linear), 900, {300, 450, 777});
 }
 
 TEST(Tracked, IsTheSameOnAnyNumberOfThreads) {
@@ -114,13 +133,13 @@ Proofs count_proofs(const model::Scene& scene, int steps, const AfterStep& after
 
 // What is kept between proofs, and changed where bodies left, says what a system made anew says.
 TEST(Tracked, IsProvenByASystemMadeAnewAfterSomeBodiesGotOtherRooms) {
-  for (const char* const law : {"law: linear, kn: 1e5, ks: 5e4, friction: 0.5",
-                                "law: linear, kn: 1e5, ks: 5e4, friction: 0.5, beta_n: 0.2, beta_s: 0.1",
-                                "law: hertz, effective_young: 1e7, effective_shear: 3e6, friction: 0.3"}) {
-    const Proofs proofs = count_proofs(scene_of(tracked, law), 4000, [](const assembly::State&) {});
-    std::printf("%s: all bodies %d times, some %d times\n", law, proofs.of_all, proofs.of_some);
+  for (const std::string& law :
+       {linear, linear + ", beta_n: 0.2, beta_s: 0.1",
+        std::string("law: hertz, effective_young: 1e7, effective_shear: 3e6, friction: 0.3")}) {
+    const Proofs proofs = count_proofs(bed_of(law), 1000, [](const assembly::State&) {});
+    std::printf("%s: all bodies %d times, some %d times\n", law.c_str(), proofs.of_all, proofs.of_some);
     EXPECT_EQ(proofs.failed, 0) << law;
-    EXPECT_GT(proofs.of_some, 100) << law;
+    EXPECT_GT(proofs.of_some, 10) << law;
   }
 }
 

@@ -8,6 +8,7 @@
 #include "support/dense.hpp"
 #include "support/motion.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,17 +22,21 @@ namespace {
 
 using assembly::WithinRooms;
 
-/// Balls of several sizes in a box, that touch, with their near list.
-assembly::State heap(const std::string& law) {
-  return cycle::start(io::read_scene_text(R"(
-materials: [{name: grain, density: 2500}]
-contacts: [{between: [grain, grain], )" + law +
-                                              R"(}]
-balls: [{fill: dense, mean_overlap: 1e-3, sizes: {distribution: uniform, min: 3 mm, max: 7 mm}, seed: 3, material: grain,
-         box: {min: [0, 0, 0], max: [0.035, 0.035, 0.035]}}]
-walls: [{box: {min: [0, 0, 0], max: [0.035, 0.035, 0.035]}, material: grain}]
-)",
-                                          "."));
+/// Balls of several sizes that touch, in a cube with sides of so many mm, with their near list.
+assembly::State heap(const std::string& law, int side) {
+  const std::string box = fmt::format("{{min: [0, 0, 0], max: [{0} mm, {0} mm, {0} mm]}}", side);
+  return cycle::start(io::read_scene_text(
+      "materials: [{name: grain, density: 2500}]\n"
+      "contacts: [{between: [grain, grain], " +
+          law +
+          "}]\n"
+          "balls: [{fill: dense, mean_overlap: 1e-3, sizes: {distribution: uniform, min: 3 mm, max: 7 mm}, "
+          "seed: 3, material: grain, box: " +
+          box +
+          "}]\n"
+          "walls: [{box: " +
+          box + ", material: grain}]\n",
+      "."));
 }
 
 const std::vector<std::string> laws{"law: linear, kn: 1e5, ks: 5e4, friction: 0.5, beta_n: 0.2, beta_s: 0.1",
@@ -74,7 +79,7 @@ TEST(WithinRooms, CountsTurnsOfContacts) {
 TEST(WithinRooms, HoldWhereverBodiesAreInThem) {
   std::mt19937_64 random(2);
   for (const std::string& law : laws) {
-    assembly::State state = heap(law);
+    assembly::State state = heap(law, 25);
     model::Bodies& bodies = state.model.bodies;
     const std::vector<Vec3> middle = bodies.position;
     std::vector<double> room;
@@ -99,7 +104,7 @@ bool same(const contact::ContactElement& l, const contact::ContactElement& r) {
 TEST(WithinRooms, AreToTheBitWhatTheyAreMadeAnewAfterBodiesGotOthers) {
   std::mt19937_64 random(4);
   for (const std::string& law : laws) {
-    const assembly::State state = heap(law);
+    const assembly::State state = heap(law, 50);
     std::vector<Vec3> position = state.model.bodies.position;
     std::vector<double> room(position.size(), 1e-6);
     WithinRooms contacts(state.model, position, room, 0);
