@@ -138,7 +138,7 @@ damping: {local: 0.7}
         self.assertLess(float(lines[0]["stress_xx [Pa]"]), 0)  # compression is negative
 
     def test_moves_a_wall(self):
-        self.relax(self.press("velocity: [0, 0, 0]"), "--load", "displacement.5=[0, 0, -0.9e-3]", "--increments", "2",
+        self.relax(self.press("velocity: [0, 0, 0]"), "--load", "displacement.5=[0, 0, -2.2e-3]", "--increments", "2",
                    "--tolerance", "1e-8")
         lines = self.table()
         self.assertGreater(float(lines[-1]["wall_5_fz [N]"]), float(lines[0]["wall_5_fz [N]"]))
