@@ -51,7 +51,15 @@ PYBIND11_MODULE(_core, module) {
   using namespace eigengrain;
   py::register_exception_translator(python::translate);
   module.attr("__version__") = EIGENGRAIN_VERSION;
-  module.def("set_threads", set_threads, py::arg("threads"));
+  module.def(
+      "set_threads",
+      [](int threads) {
+        if (threads < 0)
+          throw InputError("set_threads: " + std::to_string(threads) +
+                           "; write a number from 1 up, or 0 for one per processor");
+        set_threads(threads);
+      },
+      py::arg("threads"));
   module.def("threads", threads);
   module.def("schema_markdown", io::schema_markdown);
   module.def("set_petsc_options", petsc::set_options, py::arg("options"));

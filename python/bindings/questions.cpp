@@ -1,10 +1,12 @@
 // What is asked of a state: its critical timestep.
+#include "eigengrain/base/error.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/comparison.hpp"
 
 #include "arrays.hpp"
 #include "handle.hpp"
 #include "parts.hpp"
+#include "petsc_work.hpp"
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -19,7 +21,9 @@ using py::literals::operator""_a;
 
 timestep::Certify certify_of(const std::string& word) {
   if (word == "always") return timestep::Certify::always;
-  return word == "never" ? timestep::Certify::never : timestep::Certify::small;
+  if (word == "never") return timestep::Certify::never;
+  if (word == "small") return timestep::Certify::small;
+  throw InputError("certify: \"" + word + "\"; write always, small or never");
 }
 
 py::dict to_dict(const timestep::Truth& truth) {
@@ -48,7 +52,7 @@ py::dict critical_timestep(const Handle& handle, double tolerance, std::uint64_t
   options.certify = certify_of(certify);
   timestep::Comparison found;
   {
-    const py::gil_scoped_release open;
+    const PetscWork work;
     petsc::start();
     found = timestep::compare(state->model, options, state->settings.materials);
   }

@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "handle.hpp"
 #include "parts.hpp"
+#include "petsc_work.hpp"
 #include "system.hpp"
 
 #include <pybind11/pybind11.h>
@@ -55,7 +56,7 @@ template <class Find>
 py::dict modes_by(const SharedSystem& self, const Find& find) {
   spectrum::Modes found;
   {
-    const py::gil_scoped_release open;
+    const PetscWork work;
     found = find(self->system);
   }
   return to_dict(*self, std::move(found));
@@ -74,7 +75,7 @@ py::dict density(const SharedSystem& self, int moments, int vectors, int bins, s
   };
   spectrum::Density found;
   {
-    const py::gil_scoped_release open;
+    const PetscWork work;
     found = spectrum::density_of_states(self->system, options);
   }
   if (interrupt) std::rethrow_exception(interrupt);
@@ -95,7 +96,7 @@ py::dict rigidity(const Handle& handle, const std::string& springs, bool with_ra
   const spectrum::RigidityOptions options{springs_of(springs), with_rattlers, shapes};
   spectrum::Rigidity found;
   {
-    const py::gil_scoped_release open;
+    const PetscWork work;
     found = spectrum::rigidity(state->model, options);
   }
   const auto bodies = static_cast<std::size_t>(state->model.bodies.size());
@@ -130,7 +131,7 @@ py::dict moduli(const Handle& handle) {
   const Snapshot state = handle.state();
   spectrum::Moduli found;
   {
-    const py::gil_scoped_release open;
+    const PetscWork work;
     found = spectrum::elastic_moduli(state->model);
   }
   py::list displacement;

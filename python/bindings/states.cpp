@@ -17,6 +17,7 @@
 #include "arrays.hpp"
 #include "handle.hpp"
 #include "parts.hpp"
+#include "petsc_work.hpp"
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -117,7 +118,7 @@ py::dict relax(Handle& handle, double tolerance, std::int64_t max_steps, const p
   relaxation::RelaxResult result;
   std::optional<State> reached;
   {
-    const py::gil_scoped_release open;
+    const PetscWork work;
     petsc::start();
     reached.emplace(*start);
     relaxation::RelaxOptions options;

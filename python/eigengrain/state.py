@@ -284,12 +284,14 @@ class State:
         steps: so many more steps.
         time: so much longer, s.
         unbalanced: until the mean unbalanced ratio is below this and nothing falls, looked at every `every` steps.
-        callback: called with this state every `every` steps, and at the end; the run is over if it returns True.
+        callback: called with this state every `every` steps, and at the end; the run is over if it returns True
+        (of Python or numpy).
         progress: a line on the error stream.
 
         Without an end it is that of the scene (`run`), counted from the scene's start. Other threads run meanwhile.
         Ctrl-C ends it after a whole step with KeyboardInterrupt; the state is then the one reached. Raises SolverError
-        where the run blows up.
+        where the run blows up; with a callback or `unbalanced` the state is then that of the last look, else that of
+        the start.
         """
         if every < 1:
             raise InputError(f"every: {every} steps; a whole number from 1 up is wanted")
@@ -304,6 +306,10 @@ class State:
             time = None if goal_time is None else goal_time - self.time
         if steps is not None and steps < 0:
             raise InputError(f"steps: {steps}; a number from 0 up is wanted")
+        if time is not None and not time >= 0:
+            raise InputError(f"time: {time} s; a number from 0 up is wanted")
+        if unbalanced is not None and not unbalanced > 0:
+            raise InputError(f"unbalanced: {unbalanced}; a ratio above 0 is wanted")
         first, last_step = self.step, sys.maxsize if steps is None else self.step + steps
         end = float("inf") if time is None else self.time + time
         show = _Progress(first, steps, self.time, time) if progress else None
@@ -312,8 +318,10 @@ class State:
             while self.step < last_step and self.time < end:
                 part = min(last_step - self.step, every) if looks else last_step - self.step
                 self._handle.run(part, end, show)
-                if callback is not None and callback(self) is True:
-                    return
+                if callback is not None:
+                    over = callback(self)
+                    if isinstance(over, (bool, np.bool_)) and over:
+                        return
                 if unbalanced is not None:
                     balance = self.balance
                     if balance.unsupported == 0 and balance.bodies > 0 and balance.mean < unbalanced:
@@ -374,6 +382,8 @@ class State:
         contacts: those that act, or all that are near as if they acted.
         """
         from .system import System
+        if contacts not in ("acting", "listed"):
+            raise InputError(f'contacts: "{contacts}"; write acting or listed')
         return System(_core.System(self._handle, contacts == "listed"))
 
     def rigidity(self, springs: Literal["all", "sticking", "normal"] = "all", *, with_rattlers: bool = True,

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse.linalg import LinearOperator
 
 from . import _core
+from .errors import InputError
 from .results import Floats
 from .spectrum import Density, Modes
 
@@ -114,6 +115,8 @@ class System:
 
     def matrix(self, name: Literal["K", "M", "B", "D", "C"], format: str = "csr") -> scipy.sparse.spmatrix:
         """One of the matrices in any format of scipy; K_free = matrix("K")[free][:, free] has the free ones alone."""
+        if name not in ("K", "M", "B", "D", "C"):
+            raise InputError(f'matrix: "{name}"; write K, M, B, D or C')
         return getattr(self, name).asformat(format)
 
     def reduced(self) -> tuple[scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:

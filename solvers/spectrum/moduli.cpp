@@ -152,12 +152,18 @@ void check(const assembly::Model& model) {
           model.bodies.identity[row]));
 }
 
+void check(const LinearSystem& system) {
+  if (std::ranges::any_of(system.elements, [](const ContactElement& e) { return e.b == contact::no_body; }))
+    throw InputError("moduli are those of bodies alone, and here some touch a wall; leave out the walls");
+}
+
 }  // namespace
 
 Moduli elastic_moduli(const assembly::Model& model) {
   const Stopwatch watch;
   check(model);
   const LinearSystem system(model);
+  check(system);
   Moduli result;
   result.volume = model.cell.volume();
   result.contacts = std::ssize(system.elements);

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -37,6 +38,38 @@ std::int32_t least_contacts(const Model& model, Springs springs) {
   return model.gravity.isZero(0) ? dimensions + 1 : dimensions;
 }
 
+/// A bond beside the contact of a pair acts on the same δ and φ, with k_n = k^n + k̄^n A (eq. 1.34): one
+/// element for both.
+std::vector<ContactElement> merged(const std::vector<ContactElement>& elements) {
+  std::vector<std::size_t> order(elements.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, [&](std::size_t i, std::size_t j) {
+    return std::pair(elements[i].a, elements[i].b) < std::pair(elements[j].a, elements[j].b);
+  });
+  std::vector<ContactElement> result;
+  for (const std::size_t k : order) {
+    const ContactElement& e = elements[k];
+    // Of two images of a pair the levers differ by about a radius.
+    const auto same = [&](const ContactElement& other) {
+      return other.a == e.a && other.b == e.b &&
+             (other.lever_a - e.lever_a).norm() <= 1e-6 * e.lever_a.norm() &&
+             (other.lever_b - e.lever_b).norm() <= 1e-6 * e.lever_b.norm();
+    };
+    const auto pair = std::ranges::find_if(result.rbegin(), result.rend(), [&](const ContactElement& other) {
+      return other.a != e.a || other.b != e.b || same(other);
+    });
+    if (pair == result.rend() || !same(*pair)) {
+      result.push_back(e);
+      continue;
+    }
+    pair->stiffness = {.normal = pair->stiffness.normal + e.stiffness.normal,
+                       .shear = pair->stiffness.shear + e.stiffness.shear,
+                       .twist = pair->stiffness.twist + e.stiffness.twist,
+                       .bending = pair->stiffness.bending + e.stiffness.bending};
+  }
+  return result;
+}
+
 /// The contacts that count, with the springs that count.
 std::vector<ContactElement> counted_elements(const Model& model, const RigidityOptions& options,
                                              Rigidity& result) {
@@ -58,7 +91,7 @@ std::vector<ContactElement> counted_elements(const Model& model, const RigidityO
       k.shear = 0;
     if (k.normal > 0 || k.shear > 0 || k.twist > 0 || k.bending > 0) elements.push_back(element);
   });
-  return elements;
+  return merged(elements);
 }
 
 /// Two unit vectors across n.

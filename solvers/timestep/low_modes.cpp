@@ -170,6 +170,11 @@ LowModes low_modes(const LinearSystem& system, int count, double largest, const 
     if (judge(slow.stiffness(), first, result) && options.shapes)
       result.shape.push_back(mode_of(first, scale));
   }
+  // Vectors that converged to what nothing resists say that there are no more; else some are missing.
+  if (converged < count && std::ssize(result.lambda) == converged)
+    throw SolverError(
+        fmt::format("only {} of the {} slowest modes converged to a residual of {}; ask for fewer", converged,
+                    count, tolerance));
   return sorted(result);
 }
 

@@ -6,6 +6,7 @@
 #include "eigengrain/measures/acting_contacts.hpp"
 
 #include "spectrum/packings.hpp"
+#include "support/bonds.hpp"
 #include "support/lattices.hpp"
 #include "support/random_bodies.hpp"
 
@@ -49,10 +50,24 @@ TEST(Rigidity, OfATetrahedronWithFrictionHasNoMechanism) {
   EXPECT_EQ(found.unknowns, 24);
   EXPECT_EQ(found.springs.size(), 18U);
   EXPECT_EQ(found.trivial, 6);
+  EXPECT_EQ(found.floppy, 6);
+  EXPECT_EQ(found.self_stress, 0);
   EXPECT_TRUE(found.counts_agree());
   const Rigidity without = rigidity(tetrahedron({.kn = 1, .ks = 0.5}).build(), {.springs = Springs::normal});
   EXPECT_EQ(without.unknowns, 12);
   EXPECT_EQ(without.floppy, 6);
+}
+
+// A bond adds to the springs of its pair (eq. 1.34): six of them resist all that two balls can do to each
+// other.
+TEST(Rigidity, OfABondBesideAContactCountsThePairOnce) {
+  SceneBuilder builder(test::Springs{.kn = 1, .ks = 0.5});
+  builder.bonded(Cemented{}.rule()).ball({0, 0, 0}).ball({1.999, 0, 0});
+  const Rigidity found = rigidity(builder.build());
+  EXPECT_EQ(found.contacts, 1);
+  EXPECT_EQ(found.springs.size(), 6U);
+  EXPECT_EQ(found.floppy, 6);
+  EXPECT_EQ(found.self_stress, 0);
 }
 
 // A chain that repeats: N springs, N + 1 balls' worth of nothing but its own translation along it is
