@@ -68,7 +68,7 @@ TEST(Moduli, OfBccWithoutShearAreCauchy) {
 TEST(Moduli, OfDiamondRelaxInside) {
   const Moduli found = elastic_moduli(make_lattice(diamond(), {.kn = 1}, {1, 1, 1}).build());
   EXPECT_LT(found.stiffness(3, 3), 0.01 * found.affine(3, 3));  // without shear nothing holds the angles
-  EXPECT_NEAR(found.bulk(), found.affine.topLeftCorner<3, 3>().sum() / 9, 1e-11 * found.bulk());
+  EXPECT_NEAR(found.bulk(), (found.affine.topLeftCorner<3, 3>().sum() / 9), 1e-11 * found.bulk());
 }
 
 /// From positions alone: energy ½ q·K q of an affine strain and of what bodies move by beside it, minimised

@@ -10,6 +10,7 @@
 #include "support/lattices.hpp"
 #include "support/random_bodies.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
 

@@ -16,6 +16,7 @@
 #include "support/restart.hpp"
 #include "support/scaled_heap.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
