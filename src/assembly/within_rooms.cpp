@@ -27,9 +27,13 @@ WithinRooms::WithinRooms(const Model& model, std::span<const double> room, doubl
   model.contacts.for_each_group([&](const auto& group) {
     constexpr bool with_ball = std::decay_t<decltype(group)>::KinematicsType::second_is_body;
     for (const contact::Pair& pair : group.pairs) {
-      double apart = bodies.radius[static_cast<std::size_t>(pair.a)];
-      if (with_ball) apart += bodies.radius[static_cast<std::size_t>(pair.b)];
-      const double turn = approach(pair, with_ball) / apart;
+      // n turns by the approach over the distance, and a short lever changes by more of itself than that.
+      double length = bodies.radius[static_cast<std::size_t>(pair.a)];
+      if (with_ball) {
+        const double other = bodies.radius[static_cast<std::size_t>(pair.b)];
+        length = std::min(length + other, 2 * std::min(length, other));
+      }
+      const double turn = approach(pair, with_ball) / length;
       note(pair.a, turn);
       if (with_ball) note(pair.b, turn);
     }
