@@ -144,10 +144,13 @@ LowModes low_modes(const LinearSystem& system, int count, double largest, const 
   const std::vector<double> scale = system.inverse_sqrt_mass();
   SlowFirst slow(system, scale, options.shift * largest);
   // A start in the range of the operator has nothing of the motions that nothing resists.
-  const petsc::Vector random = start_vector(slow.mat(), scale, 1);
-  petsc::Vector start;
-  EIGENGRAIN_PETSC(VecDuplicate(random.get(), start.put()));
-  EIGENGRAIN_PETSC(MatMult(slow.mat(), random.get(), start.get()));
+  const auto resisted = [&](std::uint64_t number) {
+    const petsc::Vector random = start_vector(slow.mat(), scale, 1 + number);
+    petsc::Vector start = like(random.get());
+    EIGENGRAIN_PETSC(MatMult(slow.mat(), random.get(), start.get()));
+    return start;
+  };
+  const petsc::Vector start = resisted(0);
 
   petsc::Eigensolver solver;
   Vec first = start.get();
@@ -164,12 +167,19 @@ LowModes low_modes(const LinearSystem& system, int count, double largest, const 
   EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
   if (converged < 1)
     throw SolverError(fmt::format("the slowest modes did not converge to a residual of {}", tolerance));
-  LowModes result{.floor = floor};
+  std::vector<Eigenpair> pairs;
   for (PetscInt k = 0; k < std::min<PetscInt>(converged, count); ++k) {
-    EIGENGRAIN_PETSC(EPSGetEigenvector(solver.get(), k, first, nullptr));
-    if (judge(slow.stiffness(), first, result) && options.shapes)
-      result.shape.push_back(mode_of(first, scale));
+    PetscScalar value = 0;
+    Eigenpair& pair = pairs.emplace_back(Eigenpair{.vector = like(first)});
+    EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), k, &value, nullptr, pair.vector.get(), nullptr));
+    pair.value = value;
   }
+  if (count > 1 && converged >= count && count < free)
+    find_left_out(slow.mat(), pairs, resisted, tolerance, most_restarts);
+  LowModes result{.floor = floor};
+  for (const Eigenpair& pair : pairs)
+    if (judge(slow.stiffness(), pair.vector.get(), result) && options.shapes)
+      result.shape.push_back(mode_of(pair.vector.get(), scale));
   // Vectors that converged to what nothing resists say that there are no more; else some are missing.
   if (converged < count && std::ssize(result.lambda) == converged)
     throw SolverError(

@@ -12,11 +12,11 @@ inline constexpr std::int64_t low_mode_unknowns = 100000;
 
 /// The slowest motions that something resists.
 struct LowModes {
-  std::vector<double> lambda;    ///< eigenvalues of M⁻¹K, the least first, s⁻²
-  std::vector<double> residual;  ///< |A x - λ x| / |λ x| of A = M^-½ K M^-½
-  double floor = 0;              ///< what is below it counts as not resisted, s⁻²
+  std::vector<double> lambda{};    ///< eigenvalues of M⁻¹K, the least first, s⁻²
+  std::vector<double> residual{};  ///< |A x - λ x| / |λ x| of A = M^-½ K M^-½
+  double floor = 0;                ///< what is below it counts as not resisted, s⁻²
   /// [modes][unknowns.size()] eigenvectors x of K x = λ M x with x·Mx = 1, where they are asked for.
-  std::vector<std::vector<double>> shape;
+  std::vector<std::vector<double>> shape{};
 };
 
 struct LowModeOptions {
