@@ -1,7 +1,7 @@
 # Compiler settings shared by every target, as two interface targets:
 #   eigengrain_flags     what every user of the headers needs too (exported)
 #   eigengrain_warnings  what only our own code is held to (not exported)
-#   eigengrain_own       both, and the rule of floating point: every target but the kernels of the product
+#   eigengrain_own       both, and the rule of floating point: every target but the kernels (src/assembly)
 add_library(eigengrain_flags INTERFACE)
 target_compile_features(eigengrain_flags INTERFACE cxx_std_20)
 if(EIGENGRAIN_ASSERTIONS)

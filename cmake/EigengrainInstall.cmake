@@ -16,7 +16,7 @@ if(EIGENGRAIN_PETSC)
   install(TARGETS eigengrain_solvers EXPORT EigengrainSolversTargets ARCHIVE)
   install(EXPORT EigengrainSolversTargets NAMESPACE eigengrain:: DESTINATION ${EIGENGRAIN_PACKAGE_DIR})
   set(solver_headers)
-  list(APPEND finders cmake/FindPETSc.cmake cmake/FindSLEPc.cmake cmake/FindCHOLMOD.cmake)
+  list(APPEND finders cmake/FindPETSc.cmake cmake/FindSLEPc.cmake cmake/FindCHOLMOD.cmake cmake/FindSPQR.cmake)
 endif()
 install(DIRECTORY include/eigengrain DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.hpp" ${solver_headers})

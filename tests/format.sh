@@ -4,5 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 options=(--dry-run -Werror)
 [ "${1:-}" = --fix ] && options=(-i)
-find include src solvers tests examples \( -name '*.cpp' -o -name '*.hpp' \) -print0 |
+find include src solvers python tests examples \( -name '*.cpp' -o -name '*.hpp' \) -print0 |
   xargs -0 clang-format --style=file "${options[@]}"

@@ -18,12 +18,6 @@ using contact::no_body;
 /// Levers that are along n but for this part count as along n: far less than what rounding() adds.
 constexpr double along_normal = 1e-13;
 
-std::vector<Vec6> scale_of_bodies(const LinearSystem& system, std::span<const double> mass_divisor) {
-  std::vector<Vec6> scale = system.inverse_sqrt_mass_of_bodies();
-  for (std::size_t i = 0; i < mass_divisor.size(); ++i) scale[i] *= std::sqrt(mass_divisor[i]);
-  return scale;
-}
-
 /// No eigenvalue of a symmetric positive semidefinite S is larger: mean + √5 deviation, from trace and norm
 /// (Wolkowicz and Styan, Linear Algebra Appl. 29:471, 1980). What cancellation can hide in a nearly isotropic
 /// S is added to it.
@@ -121,7 +115,10 @@ struct FullSum {
 }  // namespace
 
 BodyBlocks::BodyBlocks(const LinearSystem& system, std::span<const double> mass_divisor)
-    : system_(system), scale_(scale_of_bodies(system, mass_divisor)) {
+    : system_(system),
+      scale_(system.inverse_sqrt_mass_of_bodies()),
+      divisor_(mass_divisor.begin(), mass_divisor.end()) {
+  divisor_.resize(scale_.size(), 1.0);
   moves_.reserve(scale_.size());
   simple_.reserve(scale_.size());
   for (const Vec6& scale : scale_) {
@@ -168,8 +165,9 @@ Sum BodyBlocks::sum(std::int32_t body, std::span<const double> weight, double mu
 
 Mat6 BodyBlocks::scaled(std::int32_t body, const Mat6& block) const {
   const Vec6& s = scale_[body];
-  if (system_.unknowns.axes(body) == nullptr) return s.asDiagonal() * block * s.asDiagonal();
-  return s.asDiagonal() * system_.unknowns.in_own_axes(body, body, block) * s.asDiagonal();
+  const double d = divisor_[body];
+  if (system_.unknowns.axes(body) == nullptr) return d * (s.asDiagonal() * block * s.asDiagonal());
+  return d * (s.asDiagonal() * system_.unknowns.in_own_axes(body, body, block) * s.asDiagonal());
 }
 
 Mat6 BodyBlocks::block(std::int32_t body, std::span<const double> weight, double mu) const {
@@ -203,8 +201,8 @@ double BodyBlocks::energy(std::int32_t body, std::int32_t end, const Vec6& x, do
   const Vec3 displacement = moved.head<3>() + turn.cross(lever(element, end));
   const double along = displacement.dot(element.normal);
   const double about = turn.dot(element.normal);
-  return k.normal * along * along + k.shear * (displacement.squaredNorm() - along * along) +
-         k.twist * about * about + k.bending * (turn.squaredNorm() - about * about);
+  return divisor_[body] * (k.normal * along * along + k.shear * (displacement.squaredNorm() - along * along) +
+                           k.twist * about * about + k.bending * (turn.squaredNorm() - about * about));
 }
 
 double BodyBlocks::rounding(std::int32_t body) const {
@@ -214,8 +212,9 @@ double BodyBlocks::rounding(std::int32_t body) const {
 double BodyBlocks::bound(std::int32_t body, std::span<const double> weight, double mu) const {
   const double on_safe_side = 1 + rounding(body);
   if (simple_[body] != 0)
-    return on_safe_side * sum<RadialSum>(body, weight, mu)
-                              .bound(scale_[body][0] * scale_[body][0], scale_[body][3] * scale_[body][3]);
+    return on_safe_side * divisor_[body] *
+           sum<RadialSum>(body, weight, mu)
+               .bound(scale_[body][0] * scale_[body][0], scale_[body][3] * scale_[body][3]);
   const Mat6 s = block(body, weight, mu);
   return on_safe_side * eigenvalue_bound(s.trace(), s.squaredNorm());
 }

@@ -26,6 +26,8 @@ class BodyBlocks {
   ///
   /// mass_divisor  [bodies] M_i is divided by it (1 + α_i of local damping); empty: by one
   explicit BodyBlocks(const assembly::LinearSystem& system, std::span<const double> mass_divisor = {});
+  /// M_i is divided by this from now on.
+  void divide_mass(std::int32_t body, double divisor) { divisor_[static_cast<std::size_t>(body)] = divisor; }
 
   std::int32_t bodies() const { return static_cast<std::int32_t>(scale_.size()); }
   /// Ends of contacts at a body: 2c is the first end of contact c, 2c + 1 the second.
@@ -83,9 +85,10 @@ class BodyBlocks {
 
   const assembly::LinearSystem& system_;
   Adjacency ends_;
-  std::vector<Vec6> scale_;   ///< [bodies] diagonal of M_i^-½, zero where there is no free component
-  std::vector<char> moves_;   ///< [bodies] whether any component is free
-  std::vector<char> simple_;  ///< [bodies] free, round, and all levers along normals
+  std::vector<Vec6> scale_;      ///< [bodies] diagonal of M_i^-½, zero where there is no free component
+  std::vector<double> divisor_;  ///< [bodies] of M_i
+  std::vector<char> moves_;      ///< [bodies] whether any component is free
+  std::vector<char> simple_;     ///< [bodies] free, round, and all levers along normals
 };
 
 }  // namespace eigengrain::cycle

@@ -48,6 +48,9 @@ double work_on_walls(const std::vector<assembly::WallLoad>& before,
 /// are others.
 constexpr std::int64_t steps_between_growing = 20;
 
+/// Bodies are looked at for whether they left their rooms at least this often.
+constexpr std::int64_t steps_between_looks = 1000;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -92,12 +95,10 @@ double Cycle::move(double duration, double dt, const Cell& cell) {
   const bool clumps = !bodies.clumps.empty();
   if (clumps) move_clumps<Work>(state_, duration, dt, cell);
   const std::int64_t chunks = (bodies.size() + chunk_size - 1) / chunk_size;
-  const Vec3* const from = state_.guard ? state_.guard->position.data() : state_.list.position.data();
-  const double* const rooms = state_.guard ? state_.guard->room.data() : nullptr;
-  std::vector<double> farthest(static_cast<std::size_t>(chunks), 0.0);
+  std::vector<double> fastest(static_cast<std::size_t>(chunks), 0.0);
   std::vector<assembly::EnergyIntegrals> works(Work::counts ? static_cast<std::size_t>(chunks) : 0);
   for_chunks(bodies.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
-    double way = 0;
+    double largest = 0;
     Work work(state_.dt, dt);
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       if (!clumps || bodies.clumps.of(static_cast<std::int32_t>(i)) == model::Clumps::none) {
@@ -113,23 +114,38 @@ double Cycle::move(double duration, double dt, const Cell& cell) {
                damping, fixed.rotation(), work, NoFlow{});
         own.count_applied(i, bodies.velocity[i], state_.turns() ? bodies.spin[i] : no_spin, work);
       }
-      double squared = 0;
-      if constexpr (Cell::moves)
-        squared = (bodies.position[i] - cell.carried(from[i])).squaredNorm();
-      else
-        squared = (bodies.position[i] - from[i]).squaredNorm();
-      if (rooms != nullptr) squared -= rooms[i] * rooms[i];
-      // Not a number counts as infinitely far, and the list is renewed until somebody looks.
-      if (!(squared <= way)) way = std::isnan(squared) ? infinity : squared;
+      const double squared = bodies.velocity[i].squaredNorm();
+      // Not a number counts as infinitely fast, and the list is renewed until somebody looks.
+      if (!(squared <= largest)) largest = std::isnan(squared) ? infinity : squared;
     }
     if (!bodies.orientation.empty())
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
         bodies.orientation[i] = contact::turned(bodies.orientation[i], dt * bodies.spin[i]);
-    farthest[chunk] = way;
+    fastest[chunk] = largest;
     if constexpr (Work::counts) works[chunk] = work.sum;
   });
   for (const assembly::EnergyIntegrals& work : works) state_.ledger->integrals += work;
-  return *std::max_element(farthest.begin(), farthest.end());
+  return std::sqrt(*std::max_element(fastest.begin(), fastest.end()));
+}
+
+template <class Cell>
+double Cycle::least_slack(double room, const Cell& cell) const {
+  constexpr std::int64_t chunk_size = 1024;
+  const std::vector<Vec3>& position = state_.model.bodies.position;
+  const std::vector<Vec3>& from = state_.guard ? state_.guard->position : state_.list.position;
+  std::vector<double> least((position.size() + chunk_size - 1) / chunk_size, infinity);
+  for_chunks(std::ssize(position), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      double way = 0;
+      if constexpr (Cell::moves)
+        way = (position[i] - cell.carried(from[i])).norm();
+      else
+        way = (position[i] - from[i]).norm();
+      const double slack = (state_.guard ? state_.guard->room[i] : room) - way;
+      if (!(slack >= least[chunk])) least[chunk] = std::isnan(slack) ? -infinity : slack;
+    }
+  });
+  return *std::min_element(least.begin(), least.end());
 }
 
 bool Cycle::list_is_old() const {
@@ -144,6 +160,7 @@ bool Cycle::list_is_old() const {
 void Cycle::list_anew() {
   assembly::renew_list(state_, state_.list.skin);
   forces_ = assembly::ContactForceSum(state_.model, state_.turns());
+  slack_ = 0;
 }
 
 template <class Cell>
@@ -157,6 +174,7 @@ double Cycle::move(double duration, double dt, const Cell& cell) {
 }
 
 void Cycle::choose_timestep() {
+  slack_ = 0;  // a guard may come or go
   if (policy_.prepare) policy_.prepare(state_);
   const double chosen = policy_.dt(state_);
   if (!(chosen > 0) || !std::isfinite(chosen))
@@ -177,25 +195,33 @@ void Cycle::step() {
   if (walls_.any()) walls_.move(state_, dt);  // first: what drives a wall is its load at t
   const double duration = 0.5 * (state_.dt + dt);
   const bool deforms = state_.model.cell.deforms();
-  double way = 0;
-  double room = half_skin;  // for bodies while the list holds
+  // Balls of clumps turn about its centre, and rooms shrink as radii grow.
+  const bool looks_always = growth.any() || !state_.model.bodies.clumps.empty();
+  double slack = 0;
   if (deforms) {
     const assembly::CellStep cell = assembly::move_cell(state_, dt);
-    way = move(duration, dt, cell);
-    room = cell.margin;
+    move(duration, dt, cell);
+    growth.apply();
+    slack = least_slack(cell.margin - state_.list.growth, cell);
+    slack_ = 0;  // of a cell at rest nothing is known yet
   } else {
-    way = move(duration, dt, assembly::CellAtRest{});
+    const assembly::CellAtRest cell;
+    slack_ -= dt * move(duration, dt, cell);
+    growth.apply();
+    // Looked at only where the fastest body could have left its room, beyond the rounding of the sum; and
+    // before the rounding of many small steps adds up.
+    if (looks_always || !(slack_ > 1e-6 * half_skin) || state_.step % steps_between_looks == 0)
+      slack_ = least_slack(half_skin - state_.list.growth, cell);
+    slack = slack_;
   }
-  growth.apply();
-  room -= state_.list.growth;  // what growth leaves for ways
   bool expired = false;
   bool left_rooms = false;
   if (state_.guard) {
     // While it holds, the list does.
-    left_rooms = !(way <= 0 && state_.list.wall_way <= state_.guard->wall_way);
+    left_rooms = !(slack >= 0 && state_.list.wall_way <= state_.guard->wall_way);
     expired = left_rooms && list_is_old();
   } else {
-    expired = !(room >= 0 && way <= room * room && state_.list.wall_way <= half_skin);
+    expired = !(slack >= 0 && state_.list.wall_way <= half_skin);
   }
   if (expired) list_anew();
   growth.count();

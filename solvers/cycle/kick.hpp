@@ -71,6 +71,7 @@ struct FlowAt<assembly::CellStep> : Flow {
 template <class Work, class AnyFlow>
 void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, double damping,
           std::uint8_t fixed, Work& work, const AnyFlow& flow) {
+  const double gain = duration / inertia;
   for (int k = 0; k < 3; ++k) {
     if (((fixed >> k) & 1) != 0) {
       work.held(force[k], velocity[k]);
@@ -80,7 +81,7 @@ void kick(Vec3& velocity, const Vec3& force, double inertia, double duration, do
     double before = velocity[k];
     if constexpr (AnyFlow::moves) before -= flow.velocity[k];
     const double resistance = assembly::local_damping_force(force[k], before, damping);
-    velocity[k] += duration * (force[k] + resistance) / inertia;
+    velocity[k] += gain * (force[k] + resistance);
     if constexpr (AnyFlow::moves) velocity[k] += flow.gain[k];
     work.free(resistance, before, velocity[k]);
   }

@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/local_damping.hpp"
+#include "eigengrain/assembly/within_rooms.hpp"
 #include "eigengrain/cycle/bounds.hpp"
 #include "eigengrain/cycle/lift.hpp"
 
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -76,9 +78,14 @@ std::vector<double> differential_factors(const State& state, double wished,
 
 /// The lift that a run makes: with few sweeps, which come within a few percent of what more would find, and
 /// with the largest α for all.
-Lift lift_in_run(const State& state, const assembly::LinearSystem& system, double wished) {
+///
+/// growth  [bodies] of what the block of each counts for more (assembly::WithinRooms); empty: nothing
+Lift lift_in_run(const State& state, const assembly::LinearSystem& system, double wished,
+                 std::span<const double> growth = {}) {
   const std::vector<double>& mass = state.model.bodies.mass;
-  const std::vector<double> damping(mass.size(), assembly::largest_damping(state.model));
+  const double alpha = assembly::largest_damping(state.model);
+  std::vector<double> damping(mass.size(), alpha);
+  for (std::size_t i = 0; i < growth.size(); ++i) damping[i] = (1 + alpha) * growth[i] - 1;
   return lift(system, mass, damping, wished, {.sweeps = 10});
 }
 
@@ -117,18 +124,20 @@ void scale_masses(State& state) {
   state.model.bodies.mass_factor = std::move(factor);
 }
 
-void track_masses(State& state) {
+void track_masses(State& state, StepTracker& tracker) {
   const model::MassScaling& scaling = state.settings.mass_scaling.value();
   const double wished = scaling.dt / state.settings.timestep.safety;
-  state.guard = track_step(state);
+  tracker.renew(state);
   if (!state.guard) return scale_masses(state);
   assembly::StepGuard& guard = *state.guard;
   if (guard.dt >= wished) return;
+  tracker.forget();
   model::Bodies& bodies = state.model.bodies;
   bodies.mass_factor.clear();
-  const assembly::LinearSystem system(
-      state.model, assembly::WithinRooms{state.model, guard.room, guard.wall_way - state.list.wall_way});
-  Lift chosen = lift_in_run(state, system, wished);
+  const assembly::WithinRooms contacts(state.model, guard.position, guard.room,
+                                       guard.wall_way - state.list.wall_way);
+  // A little more than needed, so that what holds exactly does not fail by rounding when it is proven again.
+  Lift chosen = lift_in_run(state, contacts.system(), wished * (1 + 1e-9), contacts.growth());
   spread_to_members(bodies, chosen.factor);
   bodies.mass_factor = std::move(chosen.factor);
   guard.weight = std::move(chosen.weight);

@@ -9,6 +9,7 @@
 #include "tracked_step.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace eigengrain::cycle {
 namespace {
@@ -38,10 +39,12 @@ TimestepPolicy policy_of(const model::Scene& settings) {
   // Elsewhere no guard can be had (tracked_step.hpp).
   const bool tracks = choice.policy == model::TimestepPolicy::tracked && settings.surfaces.empty() &&
                       !settings.cell.deforms();
+  const std::int64_t between_proofs = choice.every > 0 ? choice.every : steps_between_proofs;
   if (tracks && settings.mass_scaling && settings.mass_scaling->form == model::MassScaling::Form::selective)
     return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },
-            .every = choice.every > 0 ? choice.every : steps_between_proofs,
-            .prepare = track_masses,
+            .every = between_proofs,
+            .prepare = [tracker = std::make_shared<StepTracker>(between_proofs)](
+                           assembly::State& state) { track_masses(state, *tracker); },
             .keeps_guard = true};
   if (settings.mass_scaling)
     return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },
@@ -56,16 +59,17 @@ TimestepPolicy policy_of(const model::Scene& settings) {
               },
               choice.every > 0 ? choice.every : between_bounds(settings, varies)};
     case model::TimestepPolicy::tracked: {
-      const std::int64_t every = choice.every > 0 ? choice.every
-                                 : tracks         ? steps_between_proofs
-                                                  : between_bounds(settings, varies);
+      const std::int64_t every =
+          tracks || choice.every > 0 ? between_proofs : between_bounds(settings, varies);
       return {.dt =
                   [choice, varies](const assembly::State& state) {
-                    const auto guard = state.guard ? state.guard : track_step(state);
+                    if (state.guard) return choice.safety * state.guard->dt;
+                    const auto guard = StepTracker().prove(state);
                     return choice.safety * (guard ? guard->dt : proven_step(state, varies));
                   },
               .every = every,
-              .prepare = [](assembly::State& state) { state.guard = track_step(state); },
+              .prepare = [tracker = std::make_shared<StepTracker>(between_proofs)](
+                             assembly::State& state) { tracker->renew(state); },
               .worth_a_change = 1.0,
               .keeps_guard = true};
     }

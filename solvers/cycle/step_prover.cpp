@@ -196,6 +196,10 @@ double StepProver::sharpen(double wished, double content) {
   return std::min(proven, wished);
 }
 
+void StepProver::set_damping(std::int32_t body, double local_damping) {
+  blocks_->divide_mass(body, 1 + local_damping);
+}
+
 void StepProver::update(std::span<const std::int32_t> contacts) {
   if (ceiling_mu_ < 0) return;  // nothing is known anyway
   const double mu = system_.damping.empty() ? 0 : ceiling_mu_;

@@ -1,7 +1,7 @@
 #include "tracked_step.hpp"
 
-#include "eigengrain/assembly/linear_system.hpp"
 #include "eigengrain/assembly/local_damping.hpp"
+#include "eigengrain/assembly/within_rooms.hpp"
 #include "eigengrain/cycle/step_prover.hpp"
 
 #include "first_contact.hpp"
@@ -11,7 +11,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace eigengrain::cycle {
@@ -28,17 +30,25 @@ constexpr double room_at_rest = 3e-4;
 constexpr double steps_of_room = 200;
 constexpr double part_of_list = 0.2;
 
-/// When the contacts have become others the step is proven again, or, failing that, less of it.
-constexpr std::array fewer{0.995, 0.985, 0.97, 0.95, 0.92, 0.88};
+/// Together with bodies that leave their rooms those get others that are more than half of the way there, so
+/// that they do not ask one after the other. Where more than this part of all does, all get others.
+constexpr double near_the_end = 0.5;
+constexpr double most_to_renew = 0.125;
+
+/// When the contacts have become others the step is proven again, or, failing that, less of it. Proofs that
+/// fail are the dear ones.
+constexpr std::array fewer{0.985, 0.95, 0.88};
 constexpr double more = 1.01;
 constexpr int most_at_once = 4;
-/// Proofs between tries of a larger step: four times as many after one that failed.
+/// Proofs of all between tries of a larger step: four times as many after one that failed.
 constexpr std::int64_t shortest_pause = 4;
-constexpr std::int64_t longest_pause = 16;
+constexpr std::int64_t longest_pause = 64;
 /// Where the block bound has risen by more than this, so that a proof from scratch should give more.
 constexpr double worth_a_new_proof = 1.02;
+/// What holds exactly must not fail by rounding when it is proven once more.
+constexpr double beyond_rounding = 1e-9;
 /// A proof from scratch is content when steps larger by this can no more be proven.
-constexpr double content = 1.015;
+constexpr double content = 1.02;
 
 /// What bodies and walls may travel until they leave their rooms.
 class Rooms {
@@ -84,14 +94,6 @@ class Rooms {
   double duration_;  ///< s
 };
 
-void make_room(const State& state, StepGuard& guard) {
-  const Rooms rooms(state);
-  guard.position = state.model.bodies.position;
-  guard.room.resize(guard.position.size());
-  for (std::size_t i = 0; i < guard.room.size(); ++i) guard.room[i] = rooms.of_body(i);
-  guard.wall_way = state.list.wall_way + rooms.of_walls();
-}
-
 /// Whether proofs of this kind are made here.
 bool can_track(const State& state) {
   const model::Bodies& bodies = state.model.bodies;
@@ -100,10 +102,29 @@ bool can_track(const State& state) {
          !model::radii_change(bodies, state.time, std::numeric_limits<double>::infinity());
 }
 
+/// Whether single bodies of a state can be given other rooms.
+bool some_can_be_renewed(const State& state, std::int64_t every) {
+  // A list is new while all are where they were when it was made; who is asked then proves all anew.
+  const bool new_list = state.model.bodies.position == state.list.position;
+  return state.guard && !new_list && state.step - state.guard->step < every && can_track(state) &&
+         assembly::WithinRooms::can_move(state.model);
+}
+
+std::vector<std::int32_t> bodies_near_the_end(const State& state) {
+  std::vector<std::int32_t> found;
+  const std::vector<Vec3>& position = state.model.bodies.position;
+  for (std::size_t i = 0; i < position.size(); ++i) {
+    const double way = near_the_end * state.guard->room[i];
+    if (!((position[i] - state.guard->position[i]).squaredNorm() <= way * way))
+      found.push_back(static_cast<std::int32_t>(i));
+  }
+  return found;
+}
+
 void prove_from_scratch(StepProver& prover, StepGuard& guard) {
   prover.set_weights(std::vector<double>(prover.weights().size(), 1.0));
   const double bound = prover.bound();
-  guard.dt = prover.sharpen(std::numeric_limits<double>::infinity(), content);
+  guard.dt = (1 - beyond_rounding) * prover.sharpen(std::numeric_limits<double>::infinity(), content);
   guard.gain = std::isfinite(guard.dt) ? guard.dt / bound : 1.0;
 }
 
@@ -137,22 +158,79 @@ void prove_again(StepProver& prover, StepGuard& guard) {
   prove_from_scratch(prover, guard);
 }
 
+/// The α of a body with which its block counts for what it can grow by.
+double counted_damping(double local_damping, double growth) {
+  return (1 + local_damping) * growth - 1;
+}
+
+std::vector<double> counted_damping(double local_damping, const std::vector<double>& growth) {
+  std::vector<double> result;
+  result.reserve(growth.size());
+  for (const double by : growth) result.push_back(counted_damping(local_damping, by));
+  return result;
+}
+
 }  // namespace
 
-std::optional<StepGuard> track_step(const State& state) {
+struct StepTracker::Standing {
+  Standing(const State& state, const StepGuard& guard)
+      : damping(assembly::largest_damping(state.model)),
+        contacts(state.model, guard.position, guard.room, guard.wall_way - state.list.wall_way),
+        prover(contacts.system(), counted_damping(damping, contacts.growth())) {
+    if (guard.weight.size() == guard.room.size()) prover.set_weights(guard.weight);
+  }
+
+  /// Whether it is what a guard was proven with.
+  bool is_of(const StepGuard& guard) const {
+    return contacts.room() == guard.room && contacts.position() == guard.position &&
+           prover.weights() == guard.weight;
+  }
+
+  void move(const State& state, std::span<const std::int32_t> bodies, const StepGuard& guard) {
+    const std::vector<std::int32_t> changed = contacts.move(state.model, bodies, guard.position, guard.room);
+    for (const std::int32_t contact : changed) {
+      const contact::ContactElement& element = contacts.system().elements[static_cast<std::size_t>(contact)];
+      for (const std::int32_t body : {element.a, element.b})
+        if (body != contact::no_body)
+          prover.set_damping(body,
+                             counted_damping(damping, contacts.growth()[static_cast<std::size_t>(body)]));
+    }
+    prover.update(changed);
+  }
+
+  double damping;  ///< α
+  assembly::WithinRooms contacts;
+  StepProver prover;
+};
+
+StepTracker::StepTracker(std::int64_t every) : every_(every) {}
+StepTracker::~StepTracker() = default;
+
+void StepTracker::forget() {
+  standing_.reset();
+}
+
+std::optional<StepGuard> StepTracker::prove(const State& state) {
+  forget();
   if (!can_track(state)) return std::nullopt;
   StepGuard guard;
   guard.step = state.step;
-  make_room(state, guard);
-  const assembly::LinearSystem system(
-      state.model, assembly::WithinRooms{state.model, guard.room, guard.wall_way - state.list.wall_way});
-  StepProver prover(system, assembly::largest_damping(state.model));
-  if (state.guard && state.guard->weight.size() == guard.room.size()) {
+  const Rooms rooms(state);
+  guard.position = state.model.bodies.position;
+  guard.room.resize(guard.position.size());
+  for (std::size_t i = 0; i < guard.room.size(); ++i) guard.room[i] = rooms.of_body(i);
+  guard.wall_way = state.list.wall_way + rooms.of_walls();
+  const bool known = state.guard && state.guard->weight.size() == guard.room.size();
+  if (known) {
     guard.dt = state.guard->dt;
     guard.gain = state.guard->gain;
     guard.pause = state.guard->pause;
     guard.last_pause = state.guard->last_pause;
-    prover.set_weights(state.guard->weight);
+    guard.weight = state.guard->weight;
+  }
+  standing_ = std::make_unique<Standing>(state, guard);
+  StepProver& prover = standing_->prover;
+  if (known) {
     prove_again(prover, guard);
   } else {
     prove_from_scratch(prover, guard);
@@ -163,6 +241,27 @@ std::optional<StepGuard> track_step(const State& state) {
   if (!std::isfinite(guard.dt)) return std::nullopt;
   guard.weight = prover.weights();
   return guard;
+}
+
+bool StepTracker::renew_some(const State& state, StepGuard& guard) {
+  const std::vector<std::int32_t> bodies = bodies_near_the_end(state);
+  if (static_cast<double>(bodies.size()) > most_to_renew * static_cast<double>(guard.room.size()))
+    return false;
+  if (!standing_ || !standing_->is_of(guard)) standing_ = std::make_unique<Standing>(state, guard);
+  const Rooms rooms(state);
+  for (const std::int32_t body : bodies) {
+    const auto row = static_cast<std::size_t>(body);
+    guard.position[row] = state.model.bodies.position[row];
+    guard.room[row] = rooms.of_body(row);
+  }
+  standing_->move(state, bodies, guard);
+  if (!standing_->prover.prove(guard.dt)) return false;
+  guard.weight = standing_->prover.weights();
+  return true;
+}
+
+void StepTracker::renew(State& state) {
+  if (!(some_can_be_renewed(state, every_) && renew_some(state, *state.guard))) state.guard = prove(state);
 }
 
 }  // namespace eigengrain::cycle

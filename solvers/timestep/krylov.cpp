@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,10 @@ constexpr double largest_residual = 1e-8;
 /// Eigenvalues below this part of the largest one are zeros.
 constexpr double zero_part = 1e-10;
 
+PetscInt restarts_of(const TruthOptions& options, PetscInt vectors) {
+  return static_cast<PetscInt>(2 * options.max_products / vectors) + 1;
+}
+
 petsc::Eigensolver symmetric_solver(Mat matrix, Vec start, int count, const TruthOptions& options) {
   const PetscInt vectors = std::max<PetscInt>(krylov_vectors, 2 * count + 8);
   petsc::Eigensolver solver;
@@ -34,8 +39,7 @@ petsc::Eigensolver symmetric_solver(Mat matrix, Vec start, int count, const Trut
   EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
   EIGENGRAIN_PETSC(EPSSetConvergenceTest(solver.get(), EPS_CONV_REL));
   EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), count, vectors, PETSC_DEFAULT));
-  const auto restarts = static_cast<PetscInt>(2 * options.max_products / vectors) + 1;
-  EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), options.tolerance, restarts));
+  EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), options.tolerance, restarts_of(options, vectors)));
   EIGENGRAIN_PETSC(EPSSetInitialSpace(solver.get(), 1, &start));
   EIGENGRAIN_PETSC(EPSSetFromOptions(solver.get()));
   // What is asked for is no option.
@@ -67,6 +71,32 @@ std::vector<Eigenpair> iterate(Mat matrix, Vec x, int count, const TruthOptions&
   return pairs;
 }
 
+/// The largest eigenpair in the space across those that were found; none where it did not converge.
+std::optional<Eigenpair> largest_beside(Mat matrix, const std::vector<Eigenpair>& found, Vec start,
+                                        double tolerance, PetscInt restarts) {
+  petsc::Eigensolver solver;
+  EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
+  EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), matrix, nullptr));
+  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_HEP));
+  EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
+  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
+  EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), 1, krylov_vectors, PETSC_DEFAULT));
+  EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), tolerance, restarts));
+  std::vector<Vec> across;
+  for (const Eigenpair& pair : found) across.push_back(pair.vector.get());
+  EIGENGRAIN_PETSC(EPSSetDeflationSpace(solver.get(), static_cast<PetscInt>(across.size()), across.data()));
+  EIGENGRAIN_PETSC(EPSSetInitialSpace(solver.get(), 1, &start));
+  EIGENGRAIN_PETSC(EPSSolve(solver.get()));
+  PetscInt converged = 0;
+  EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
+  if (converged < 1) return std::nullopt;
+  PetscScalar value = 0;
+  Eigenpair pair{.vector = like(start)};
+  EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &value, nullptr, pair.vector.get(), nullptr));
+  pair.value = value;
+  return pair;
+}
+
 /// The same of a small product, as a dense matrix.
 std::vector<Eigenpair> solve_dense(StiffnessProduct& product, Vec like_this, int count) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense(product));
@@ -94,6 +124,27 @@ void require_eigenpair(const Eigenpair& pair, const char* what, const char* opti
                     what, pair.residual, largest_residual, option));
 }
 
+void find_left_out(Mat matrix, std::vector<Eigenpair>& pairs,
+                   const std::function<petsc::Vector(std::uint64_t)>& start, double tolerance,
+                   PetscInt restarts) {
+  constexpr double loose = 1e-5;    // the value errs by its square, which tells whether it is of interest
+  constexpr double greater = 1e-9;  // of itself
+  for (std::uint64_t number = 1;; ++number) {
+    const petsc::Vector first = start(number);
+    std::optional<Eigenpair> more = largest_beside(matrix, pairs, first.get(), loose, restarts);
+    if (!more || !(more->value > (1 + greater) * pairs.back().value)) return;
+    const petsc::Vector close = std::move(more->vector);
+    more = largest_beside(matrix, pairs, close.get(), tolerance, restarts);
+    if (!more)
+      throw SolverError(
+          fmt::format("one of several equal eigenvalues did not converge to a residual of {}", tolerance));
+    const auto at =
+        std::ranges::find_if(pairs, [&](const Eigenpair& pair) { return pair.value < more->value; });
+    pairs.insert(at, std::move(*more));
+    pairs.pop_back();
+  }
+}
+
 std::vector<Eigenpair> largest_eigenpairs(StiffnessProduct& product, std::span<const double> scale, int count,
                                           const TruthOptions& options) {
   const auto free = std::ranges::count_if(scale, [](double s) { return s > 0; });
@@ -103,6 +154,11 @@ std::vector<Eigenpair> largest_eigenpairs(StiffnessProduct& product, std::span<c
   std::vector<Eigenpair> pairs = is_dense(product.size())
                                      ? solve_dense(product, start.get(), count)
                                      : iterate(matrix.mat(), start.get(), count, options);
+  if (!is_dense(product.size()) && count > 1 && count < free)
+    find_left_out(
+        matrix.mat(), pairs,
+        [&](std::uint64_t number) { return start_vector(matrix.mat(), scale, options.seed + number); },
+        options.tolerance, restarts_of(options, krylov_vectors));
   const double largest = pairs.front().value;
   for (Eigenpair& pair : pairs) {
     Vec x = pair.vector.get();

@@ -5,6 +5,7 @@
 
 #include "product_shell.hpp"
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,20 @@ struct Eigenpair {
 Eigenpair largest_eigenpair(assembly::StiffnessProduct& product, std::span<const double> scale,
                             const TruthOptions& options);
 
-/// The `count` largest ones, in decreasing order; fewer where the free components are fewer. The iteration
-/// takes them from one Krylov space.
+/// The `count` largest ones, in decreasing order, each as often as it occurs; fewer where the free components
+/// are fewer.
 std::vector<Eigenpair> largest_eigenpairs(assembly::StiffnessProduct& product, std::span<const double> scale,
                                           int count, const TruthOptions& options);
+
+/// Of equal eigenvalues a Krylov space has one vector, and rounding brings in the others late or never. Asks
+/// beside the vectors that were found for one more, until it is none that was left out.
+///
+/// pairs    in decreasing order; stay as many
+/// start    another vector for each number from 1 up, and another than that of the space
+/// restarts at most, for each
+void find_left_out(Mat matrix, std::vector<Eigenpair>& pairs,
+                   const std::function<petsc::Vector(std::uint64_t)>& start, double tolerance,
+                   PetscInt restarts);
 
 /// A loose or meaningless eigenpair must not pass for the truth: throws SolverError.
 ///

@@ -14,8 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
+#include <numeric>
 
 namespace eigengrain::timestep {
 namespace {
@@ -25,9 +24,9 @@ using assembly::StiffnessProduct;
 
 constexpr std::int64_t dense_low_modes = 300;
 
-/// σ over λ_max. Rounding disturbs λ/(λ + σ)² of zero modes by 1e-16 (λ_max/σ)²/λ_max, a ten thousandth of
-/// 1/λ_max; a smaller σ would bring that near to the 1/λ of the slowest modes.
-constexpr double shift = 1e-6;
+// Rounding disturbs λ/(λ + σ)² of zero modes by 1e-16 (λ_max/σ)²/λ_max, at the usual σ = 1e-6 λ_max a ten
+// thousandth of 1/λ_max, at 1e-8 λ_max as much as the 1/λ of the fastest modes: both are far from those of
+// the slowest ones.
 
 /// λ over λ_max of what counts as not resisted: rounding of zeros, with room.
 constexpr double floor_part = 1e-10;
@@ -83,13 +82,21 @@ class SlowFirst {
   petsc::Matrix matrix_;
 };
 
-LowModes dense_modes(const LinearSystem& system, int count, double floor) {
-  LowModes result{.lambda = {}, .residual = {}, .floor = floor};
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(assembly::dense_scaled_stiffness(system),
-                                                           Eigen::EigenvaluesOnly);
-  for (const double lambda : all.eigenvalues()) {
+LowModes dense_modes(const LinearSystem& system, int count, double floor, bool shapes) {
+  LowModes result{.floor = floor};
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(
+      assembly::dense_scaled_stiffness(system), shapes ? Eigen::ComputeEigenvectors : Eigen::EigenvaluesOnly);
+  const std::vector<std::int32_t> free = system.unknowns.free_components();
+  for (Eigen::Index k = 0; k < all.eigenvalues().size(); ++k) {
+    const double lambda = all.eigenvalues()[k];
     if (static_cast<int>(result.lambda.size()) == count) break;
     if (lambda <= floor) continue;
+    if (shapes) {
+      std::vector<double>& shape = result.shape.emplace_back(system.mass.size(), 0.0);
+      for (std::size_t i = 0; i < free.size(); ++i)
+        shape[static_cast<std::size_t>(free[i])] = all.eigenvectors()(static_cast<Eigen::Index>(i), k) /
+                                                   std::sqrt(system.mass[static_cast<std::size_t>(free[i])]);
+    }
     result.lambda.push_back(lambda);
     result.residual.push_back(1e-16 * static_cast<double>(all.eigenvalues().size()) *
                               all.eigenvalues().maxCoeff() / lambda);
@@ -97,34 +104,53 @@ LowModes dense_modes(const LinearSystem& system, int count, double floor) {
   return result;
 }
 
-/// λ and its residual of a vector, with A itself.
-void judge(StiffnessProduct& stiffness, Vec x, LowModes& result) {
+/// λ and its residual of a vector, with A itself; false where it is none of the modes.
+bool judge(StiffnessProduct& stiffness, Vec x, LowModes& result) {
   const ProductShell a(stiffness);
   petsc::Vector image;
   EIGENGRAIN_PETSC(VecDuplicate(x, image.put()));
   EIGENGRAIN_PETSC(MatMult(a.mat(), x, image.get()));
   const double lambda = dot(x, image.get()) / dot(x, x);
-  if (!(lambda > result.floor)) return;
+  if (!(lambda > result.floor)) return false;
   EIGENGRAIN_PETSC(VecAXPY(image.get(), -lambda, x));
   result.lambda.push_back(lambda);
   result.residual.push_back(std::sqrt(dot(image.get(), image.get()) / dot(x, x)) / lambda);
+  return true;
+}
+
+/// The least λ first.
+LowModes sorted(const LowModes& modes) {
+  std::vector<std::size_t> order(modes.lambda.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order,
+                           [&](std::size_t i, std::size_t j) { return modes.lambda[i] < modes.lambda[j]; });
+  LowModes result{.floor = modes.floor};
+  for (const std::size_t k : order) {
+    result.lambda.push_back(modes.lambda[k]);
+    result.residual.push_back(modes.residual[k]);
+    if (!modes.shape.empty()) result.shape.push_back(modes.shape[k]);
+  }
+  return result;
 }
 
 }  // namespace
 
-LowModes low_modes(const LinearSystem& system, int count, double largest) {
+LowModes low_modes(const LinearSystem& system, int count, double largest, const LowModeOptions& options) {
   const auto free = static_cast<std::int64_t>(system.unknowns.free_components().size());
   const double floor = floor_part * largest;
   if (free == 0 || !(largest > 0)) return {};
-  if (free <= dense_low_modes) return dense_modes(system, count, floor);
+  if (free <= dense_low_modes) return dense_modes(system, count, floor, options.shapes);
   petsc::start();
   const std::vector<double> scale = system.inverse_sqrt_mass();
-  SlowFirst slow(system, scale, shift * largest);
+  SlowFirst slow(system, scale, options.shift * largest);
   // A start in the range of the operator has nothing of the motions that nothing resists.
-  const petsc::Vector random = start_vector(slow.mat(), scale, 1);
-  petsc::Vector start;
-  EIGENGRAIN_PETSC(VecDuplicate(random.get(), start.put()));
-  EIGENGRAIN_PETSC(MatMult(slow.mat(), random.get(), start.get()));
+  const auto resisted = [&](std::uint64_t number) {
+    const petsc::Vector random = start_vector(slow.mat(), scale, 1 + number);
+    petsc::Vector start = like(random.get());
+    EIGENGRAIN_PETSC(MatMult(slow.mat(), random.get(), start.get()));
+    return start;
+  };
+  const petsc::Vector start = resisted(0);
 
   petsc::Eigensolver solver;
   Vec first = start.get();
@@ -141,17 +167,25 @@ LowModes low_modes(const LinearSystem& system, int count, double largest) {
   EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
   if (converged < 1)
     throw SolverError(fmt::format("the slowest modes did not converge to a residual of {}", tolerance));
-  LowModes result{.lambda = {}, .residual = {}, .floor = floor};
+  std::vector<Eigenpair> pairs;
   for (PetscInt k = 0; k < std::min<PetscInt>(converged, count); ++k) {
-    EIGENGRAIN_PETSC(EPSGetEigenvector(solver.get(), k, first, nullptr));
-    judge(slow.stiffness(), first, result);
+    PetscScalar value = 0;
+    Eigenpair& pair = pairs.emplace_back(Eigenpair{.vector = like(first)});
+    EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), k, &value, nullptr, pair.vector.get(), nullptr));
+    pair.value = value;
   }
-  std::vector<std::pair<double, double>> sorted;
-  for (std::size_t k = 0; k < result.lambda.size(); ++k)
-    sorted.emplace_back(result.lambda[k], result.residual[k]);
-  std::ranges::sort(sorted);
-  for (std::size_t k = 0; k < sorted.size(); ++k) std::tie(result.lambda[k], result.residual[k]) = sorted[k];
-  return result;
+  if (count > 1 && converged >= count && count < free)
+    find_left_out(slow.mat(), pairs, resisted, tolerance, most_restarts);
+  LowModes result{.floor = floor};
+  for (const Eigenpair& pair : pairs)
+    if (judge(slow.stiffness(), pair.vector.get(), result) && options.shapes)
+      result.shape.push_back(mode_of(pair.vector.get(), scale));
+  // Vectors that converged to what nothing resists say that there are no more; else some are missing.
+  if (converged < count && std::ssize(result.lambda) == converged)
+    throw SolverError(
+        fmt::format("only {} of the {} slowest modes converged to a residual of {}; ask for fewer", converged,
+                    count, tolerance));
+  return sorted(result);
 }
 
 }  // namespace eigengrain::timestep

@@ -92,6 +92,36 @@ void add_compare(CLI::App& program, Options& options) {
       ->type_name("SECONDS");
   add_page(*steps, options);
 }
+
+/// What is asked of the elastic stiffness of an assembly.
+void add_spectrum(CLI::App& program, Options& options) {
+  SpectrumOptions& wanted = options.spectrum;
+  CLI::App* modes = add_verb(program, "modes", "lowest and highest modes, and the density of states", options,
+                             eigengrain::app::modes);
+  add_petsc(*modes, options, "-eps_ncv 80");
+  modes->add_option("--lowest", wanted.lowest, "how many that something resists; default 10")
+      ->check(CLI::Range(0, 1000));
+  modes->add_option("--highest", wanted.highest, "how many; default 10")->check(CLI::Range(0, 1000));
+  CLI::Option* all = modes->add_flag("--all", wanted.all, "every mode, by a dense matrix");
+  modes
+      ->add_option("--shapes", options.modes_file,
+                   "write the shapes of the lowest and highest ones, for ParaView")
+      ->type_name("FILE.vtu")
+      ->excludes(all);
+  CLI::Option* density = modes->add_flag("--density", wanted.density, "the density of states, for any size");
+  modes->add_option("--moments", wanted.moments, "of the density; default 512")->needs(density);
+  modes->add_option("--vectors", wanted.vectors, "random vectors of the density; default 8")->needs(density);
+  modes->add_option("--bins", wanted.bins, "of the density; default 50")->needs(density);
+  CLI::App* rigidity = add_verb(program, "rigidity", "floppy modes and states of self-stress, counted",
+                                options, eigengrain::app::rigidity);
+  rigidity
+      ->add_option(
+          "--springs", wanted.springs,
+          "all, sticking (contacts that slide have no shear) or normal (the frictionless count); default all")
+      ->check(CLI::IsMember({"all", "sticking", "normal"}));
+  rigidity->add_flag("--without-rattlers", wanted.without_rattlers, "of the balls that are held alone");
+  add_verb(program, "moduli", "elastic stiffness tensor of a periodic assembly", options, moduli);
+}
 #endif
 
 /// A word that is no verb (or subject of one): said plainly, with the one that was probably meant.
@@ -166,8 +196,17 @@ int run_program(int argc, char** argv) {
                    "the least mass, on the fewest bodies, that makes this step stable (s), and what it does "
                    "to the slowest modes")
       ->type_name("DT");
+  add_spectrum(program, options);
   add_compare(program, options);
 #endif
+  CLI::App* exporting =
+      add_verb(program, "export", "K, M, B, D, contacts and the map of the unknowns, for other programs",
+               options, export_matrices);
+  exporting->add_option("--output", options.output, "folder of the files; default: SCENE-matrices, here")
+      ->type_name("FOLDER");
+  exporting->add_option("--format", options.formats, "mtx (MatrixMarket), petsc, h5, csv; default: h5,csv")
+      ->delimiter(',')
+      ->type_name("F,F,...");
   program.add_subcommand("schema", "print every key of a scene file, as Markdown")->callback([] {
     fmt::print("{}", io::schema_markdown());
   });

@@ -8,6 +8,19 @@
 /// The verbs of the command line: one file each, verb_<name>.cpp.
 namespace eigengrain::app {
 
+/// What modes and rigidity are asked for.
+struct SpectrumOptions {
+  int lowest = 10;                ///< how many
+  int highest = 10;               ///< how many
+  bool all = false;               ///< every mode there is
+  bool density = false;           ///< density of states by random vectors
+  int moments = 512;              ///< of it
+  int vectors = 8;                ///< of it
+  int bins = 50;                  ///< of it
+  std::string springs = "all";    ///< of rigidity
+  bool without_rattlers = false;  ///< of rigidity
+};
+
 /// What every verb takes.
 struct Options {
   std::string scene;                   ///< file
@@ -29,6 +42,8 @@ struct Options {
   int modes = 0;                       ///< of timestep: how many of the modes that limit the step; 0: none
   std::string modes_file;              ///< of timestep: their shapes; empty: none
   std::optional<double> lift;          ///< of timestep: the step that masses are to make stable, s
+  SpectrumOptions spectrum;            ///< of modes and rigidity
+  std::vector<std::string> formats;    ///< of export
 };
 
 /// Each throws InputError, SolverError or Interrupted; whatever returns was a success.
@@ -38,6 +53,10 @@ void measure(const Options& options);
 void timestep(const Options& options);
 void run(const Options& options);
 void relax(const Options& options);
+void modes(const Options& options);
+void rigidity(const Options& options);
+void moduli(const Options& options);
+void export_matrices(const Options& options);
 /// `compare` takes a subject: a verb of its own, with a page of its own.
 void compare_timesteps(const Options& options);
 void compare_steps(const Options& options);

@@ -9,8 +9,10 @@
 #include "eigengrain/contact/orientation.hpp"
 
 #include "flat.hpp"
+#include "force_kernel.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -59,7 +61,50 @@ std::int64_t chunk_of_bodies(std::int64_t bodies) {
   return std::clamp<std::int64_t>(bodies / 16, 128, 2048);
 }
 
+/// Whether a kernel evaluates the contacts of a group (force_kernel.hpp).
+template <class Group>
+inline constexpr bool in_packs = std::is_same_v<typename Group::KinematicsType, contact::BallBall>&&
+                                     contact::takes_packs<typename Group::LawType> &&
+                                 !contact::BondLaw<typename Group::LawType>;
+
+/// [contacts] whether their state is another than that of surfaces which never touched.
+template <class Group>
+std::vector<std::uint8_t> has_history(const Group& group) {
+  using State = typename Group::State;
+  std::vector<std::uint8_t> result(group.states.size(), 0);
+  if constexpr (!std::is_empty_v<State>) {
+    const State never{};
+    for (std::size_t c = 0; c < result.size(); ++c)
+      result[c] = std::memcmp(&group.states[c], &never, sizeof(State)) != 0 ? 1 : 0;
+  }
+  return result;
+}
+
+/// A thread's sums of the chunk that it works on: they stay in the processor's cache from one chunk to the
+/// next.
+kernel::BodySum* zeroed_sums(std::int64_t bodies) {
+  thread_local std::vector<kernel::BodySum> sums;
+  sums.assign(static_cast<std::size_t>(bodies), {});
+  return sums.data();
+}
+
 }  // namespace
+
+namespace kernel {
+
+extern const ForceKernel force_kernel_baseline;
+#ifdef EIGENGRAIN_KERNEL_AVX2
+extern const ForceKernel force_kernel_avx2;
+#endif
+
+const ForceKernel& best_force_kernel() {
+#ifdef EIGENGRAIN_KERNEL_AVX2
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return force_kernel_avx2;
+#endif
+  return force_kernel_baseline;
+}
+
+}  // namespace kernel
 
 std::vector<Quat> turned_orientations(const model::Bodies& bodies, std::span<const Vec3> rotation) {
   std::vector<Quat> result = bodies.orientation;
@@ -84,11 +129,11 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
   });
   for (std::size_t i = 0; i < static_cast<std::size_t>(bodies); ++i)
     foreign_starts_[i + 1] += foreign_starts_[i];
-  foreign_force_.assign(static_cast<std::size_t>(foreign_starts_.back()), Vec3::Zero());
-  if (turns_) foreign_moment_ = foreign_force_;
+  foreign_.resize(static_cast<std::size_t>(foreign_starts_.back()));
 
   std::vector<std::int32_t> next(foreign_starts_.begin(), foreign_starts_.end() - 1);
   model.contacts.for_each_group([&](const auto& group) {
+    using Group = std::decay_t<decltype(group)>;
     GroupPlan& plan = plans_.emplace_back();
     const auto& pairs = group.pairs;
     EIGENGRAIN_ASSERT(std::is_sorted(pairs.begin(), pairs.end(), [](auto l, auto r) { return l.a < r.a; }));
@@ -97,100 +142,156 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
                                               [&](const auto& pair) { return pair.a < chunk * chunk_size_; });
       plan.starts.push_back(first - pairs.begin());
     }
-    if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body)
+    if constexpr (Group::KinematicsType::second_is_body)
       for (const contact::Pair& pair : pairs)
-        plan.slot.push_back(elsewhere(pair) ? next[pair.b]++ : own_chunk);
+        plan.slot.push_back(elsewhere(pair) ? next[pair.b]++ : kernel::own_chunk);
+    if constexpr (contact::BondLaw<typename Group::LawType>)
+      plan.broken.resize(static_cast<std::size_t>(chunks));
+    if constexpr (in_packs<Group>) {
+      plan.active = has_history(group);
+      places_.resize(static_cast<std::size_t>(bodies));
+      if (!std::is_empty_v<typename Group::State>) motions_.resize(static_cast<std::size_t>(bodies));
+    }
   });
 }
 
-template <bool turns, bool commit, class Group>
-void ContactForceSum::sum_group(const GroupPlan& plan, Group& group, const model::Bodies& bodies,
-                                const contact::Placement& placement, const Trial& trial, BodyForces& sum) {
+ContactForceSum::~ContactForceSum() = default;
+ContactForceSum::ContactForceSum(ContactForceSum&&) noexcept = default;
+ContactForceSum& ContactForceSum::operator=(ContactForceSum&&) noexcept = default;
+
+void ContactForceSum::pack_bodies(const Model& model, const Trial& trial) {
+  if (places_.empty()) return;
+  const bool moves = !motions_.empty();
+  const bool spins = !trial.spin.empty();
+  for_each_index(model.bodies.size(), [&](std::int64_t index) {
+    const auto i = static_cast<std::size_t>(index);
+    const Vec3& x = trial.position[i];
+    places_[i] = {{x.x(), x.y(), x.z()}, model.bodies.radius[i]};
+    if (!moves) return;
+    const Vec3& v = trial.velocity[i];
+    const Vec3 w = spins ? trial.spin[i] : Vec3(Vec3::Zero());
+    motions_[i] = {{v.x(), v.y(), v.z()}, model.bodies.mass[i], {w.x(), w.y(), w.z()}, 0};
+  });
+}
+
+template <bool commit, class Group>
+void ContactForceSum::sum_group(GroupPlan& plan, Group& group, const Model& model,
+                                const contact::Placement& placement, const Trial& trial, const Chunk& chunk) {
+  if constexpr (commit && in_packs<Group>) {
+    const model::PeriodicCell& cell = model.cell;
+    const bool repeats = cell.periodic[0] || cell.periodic[1] || cell.periodic[2];
+    const kernel::Work work{.places = places_.data(),
+                            .motions = motions_.data(),
+                            .cell = repeats ? &cell : nullptr,
+                            .cell_step = trial.cell_step,
+                            .duration = trial.duration,
+                            .per_second = trial.per_second,
+                            .lever_cut = placement.lever_cut,
+                            .turns = turns_,
+                            .begin = plan.starts[static_cast<std::size_t>(chunk.index)],
+                            .end = plan.starts[static_cast<std::size_t>(chunk.index) + 1],
+                            .first_body = static_cast<std::int32_t>(chunk.first_body),
+                            .slot = plan.slot.data(),
+                            .active = plan.active.data(),
+                            .sums = chunk.sums,
+                            .foreign = foreign_.data()};
+    std::get<kernel::Advance<typename Group::LawType>>(kernel::best_force_kernel())(group, work);
+  } else if constexpr (commit && !std::is_same_v<typename Group::KinematicsType, contact::BallFacet>) {
+    // In one flat piece: the cycle spends its time here.
+    [&]() EIGENGRAIN_FLAT { sum_one_by_one<commit>(plan, group, model.bodies, placement, trial, chunk); }();
+  } else {
+    sum_one_by_one<commit>(plan, group, model.bodies, placement, trial, chunk);
+  }
+}
+
+template <bool commit, class Group>
+void ContactForceSum::sum_one_by_one(GroupPlan& plan, Group& group, const model::Bodies& bodies,
+                                     const contact::Placement& placement, const Trial& trial,
+                                     const Chunk& chunk) {
   using Kinematics = typename std::decay_t<Group>::KinematicsType;
   using ContactState = typename std::decay_t<Group>::State;
   using Law = typename std::decay_t<Group>::LawType;
-  const auto contacts_of = [&](std::int64_t chunk) {
-    for (std::int64_t index = plan.starts[chunk]; index < plan.starts[chunk + 1]; ++index) {
-      const auto c = static_cast<std::size_t>(index);
-      const contact::Pair& pair = group.pairs[c];
-      const auto& old = group.states[c];
-      const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
-      if (!group.law.acts(contact::at_rest(geometry), old)) {
-        if constexpr (commit) group.states[c] = ContactState{};
-        if constexpr (Kinematics::second_is_body)
-          if (const std::int32_t slot = plan.slot[c]; slot != own_chunk) {
-            foreign_force_[slot].setZero();
-            if constexpr (turns) foreign_moment_[slot].setZero();
-          }
-        continue;
-      }
-      ContactState next;
-      const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
-      const contact::ContactForce f = group.law.evaluate(motion, old, next);
-      if constexpr (commit && contact::BondLaw<Law>)
-        if (old.bonded() && !next.bonded())
-          broken_in_chunk_[static_cast<std::size_t>(chunk)].push_back(
-              break_of(group, c, bodies, placement, geometry, group.law.failure(motion, old)));
-      if constexpr (commit) group.states[c] = next;
-      const contact::EndForces ends = contact::end_forces(geometry, f);
-      sum.force[pair.a] += ends.force_a;
-      if constexpr (turns) sum.moment[pair.a] += ends.moment_a;
-      if constexpr (Kinematics::second_is_body) {
-        const std::int32_t slot = plan.slot[c];
-        if (slot == own_chunk) {
-          sum.force[pair.b] += ends.force_b;
-          if constexpr (turns) sum.moment[pair.b] += ends.moment_b;
-        } else {
-          foreign_force_[slot] = ends.force_b;
-          if constexpr (turns) foreign_moment_[slot] = ends.moment_b;
-        }
-      }
-    }
+  const auto at = static_cast<std::size_t>(chunk.index);
+  const auto add = [this](kernel::BodySum& sum, const Vec3& force, const Vec3& moment) {
+    Eigen::Map<Vec3>(sum.force) += force;
+    if (turns_) Eigen::Map<Vec3>(sum.moment) += moment;
   };
-  if constexpr (commit && contact::BondLaw<Law>) broken_in_chunk_.resize(plan.starts.size());
-  // The cycle's contacts of balls, which are nearly all there are, in one flat piece.
-  if constexpr (commit && Kinematics::second_is_body)
-    for_chunks(std::ssize(sum.force), chunk_size_,
-               [&](std::int64_t, std::int64_t, std::int64_t chunk) EIGENGRAIN_FLAT { contacts_of(chunk); });
-  else
-    for_chunks(std::ssize(sum.force), chunk_size_,
-               [&](std::int64_t, std::int64_t, std::int64_t chunk) { contacts_of(chunk); });
-  if constexpr (commit && contact::BondLaw<Law>)
-    for (std::vector<BondBreak>& chunk : broken_in_chunk_) {
-      broken_.insert(broken_.end(), chunk.begin(), chunk.end());
-      chunk.clear();
+  for (std::int64_t index = plan.starts[at]; index < plan.starts[at + 1]; ++index) {
+    const auto c = static_cast<std::size_t>(index);
+    const contact::Pair& pair = group.pairs[c];
+    const auto& old = group.states[c];
+    if constexpr (Kinematics::second_is_body)
+      if (const std::int32_t slot = plan.slot[c]; slot != kernel::own_chunk)
+        foreign_[static_cast<std::size_t>(slot)] = {};
+    const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
+    if (!group.law.acts(contact::at_rest(geometry), old)) {
+      if constexpr (commit) group.states[c] = ContactState{};
+      continue;
     }
+    ContactState next;
+    const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
+    const contact::ContactForce f = group.law.evaluate(motion, old, next);
+    if constexpr (commit && contact::BondLaw<Law>)
+      if (old.bonded() && !next.bonded())
+        plan.broken[at].push_back(
+            break_of(group, c, bodies, placement, geometry, group.law.failure(motion, old)));
+    if constexpr (commit) group.states[c] = next;
+    const contact::EndForces ends = contact::end_forces(geometry, f);
+    add(chunk.sums[pair.a - chunk.first_body], ends.force_a, ends.moment_a);
+    if constexpr (Kinematics::second_is_body) {
+      const std::int32_t slot = plan.slot[c];
+      add(slot == kernel::own_chunk ? chunk.sums[pair.b - chunk.first_body]
+                                    : foreign_[static_cast<std::size_t>(slot)],
+          ends.force_b, ends.moment_b);
+    }
+  }
 }
 
-template <bool turns, bool commit, class ModelRef>
+template <bool commit, class ModelRef>
 void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum) {
   EIGENGRAIN_ASSERT(plans_.size() == model.contacts.groups.size(), plans_.size());
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
-  sum.force.assign(bodies, Vec3::Zero());
-  sum.moment.assign(turns ? bodies : 0, Vec3::Zero());
-  if constexpr (commit) broken_.clear();
+  sum.force.resize(bodies);
+  sum.moment.resize(turns_ ? bodies : 0);
   const contact::Placement placement = placement_in(model, trial);
-  auto plan = plans_.begin();
-  model.contacts.for_each_group(
-      [&](auto& group) { sum_group<turns, commit>(*plan++, group, model.bodies, placement, trial, sum); });
+  if constexpr (commit) {
+    broken_.clear();
+    for (GroupPlan& plan : plans_)
+      for (std::vector<BondBreak>& found : plan.broken) found.clear();
+    pack_bodies(model, trial);
+  }
+  for_chunks(std::ssize(sum.force), chunk_size_,
+             [&](std::int64_t begin, std::int64_t end, std::int64_t index) {
+               const Chunk chunk{index, begin, zeroed_sums(chunk_size_)};
+               auto plan = plans_.begin();
+               model.contacts.for_each_group(
+                   [&](auto& group) { sum_group<commit>(*plan++, group, model, placement, trial, chunk); });
+               for (std::int64_t i = begin; i < end; ++i) {
+                 const kernel::BodySum& of_body = chunk.sums[i - begin];
+                 sum.force[static_cast<std::size_t>(i)] = Eigen::Map<const Vec3>(of_body.force);
+                 if (turns_) sum.moment[static_cast<std::size_t>(i)] = Eigen::Map<const Vec3>(of_body.moment);
+               }
+             });
   add_foreign(sum);
+  if constexpr (commit)
+    for (const GroupPlan& plan : plans_)
+      for (const std::vector<BondBreak>& found : plan.broken)
+        broken_.insert(broken_.end(), found.begin(), found.end());
 }
 
 void ContactForceSum::add_foreign(BodyForces& sum) const {
   for_each_index(std::ssize(sum.force), [&](std::int64_t index) {
     const auto body = static_cast<std::size_t>(index);
     for (std::int32_t slot = foreign_starts_[body]; slot < foreign_starts_[body + 1]; ++slot) {
-      sum.force[body] += foreign_force_[slot];
-      if (turns_) sum.moment[body] += foreign_moment_[slot];
+      const kernel::BodySum& there = foreign_[static_cast<std::size_t>(slot)];
+      sum.force[body] += Eigen::Map<const Vec3>(there.force);
+      if (turns_) sum.moment[body] += Eigen::Map<const Vec3>(there.moment);
     }
   });
 }
 
 void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForces& sum) {
-  if (turns_)
-    sum_groups<true, false>(model, trial, sum);
-  else
-    sum_groups<false, false>(model, trial, sum);
+  sum_groups<false>(model, trial, sum);
 }
 
 void ContactForceSum::follow_facets(Model& model, const contact::Placement& placement) const {
@@ -211,10 +312,7 @@ void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum,
     const contact::Placement placement = placement_in(model, trial);
     follow_facets(model, placement);
     if (dissipated != nullptr) *dissipated += dissipation_in(model, placement, trial);
-    if (turns_)
-      sum_groups<true, true>(model, trial, sum);
-    else
-      sum_groups<false, true>(model, trial, sum);
+    sum_groups<true>(model, trial, sum);
   } catch (const contact::CentreOnFacet& found) {
     throw centre_on_facet(model, found);
   }

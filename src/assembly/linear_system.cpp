@@ -1,5 +1,7 @@
 #include "eigengrain/assembly/linear_system.hpp"
 
+#include "dashpots.hpp"
+
 #include <cmath>
 #include <type_traits>
 
@@ -25,29 +27,12 @@ std::vector<double> mass_diagonal(const model::Bodies& bodies, const Unknowns& u
   return diagonal;
 }
 
-template <class Which>
-std::vector<contact::ContactDamping> contact_damping(const Model& model, const Which& which) {
+std::vector<contact::ContactDamping> contact_damping(const Model& model, Listed which) {
   std::vector<contact::ContactDamping> damping;
   if (!has_dashpots(model)) return damping;
-  const std::vector<double>& mass = model.bodies.mass;
-  for_each_element(
-      model, which, [&](const auto& law, const contact::ContactElement& e, const contact::Pair& pair) {
-        contact::ContactDamping& found = damping.emplace_back();
-        if constexpr (contact::asks_rate<std::decay_t<decltype(law)>>) {
-          const double a = mass[e.a];
-          const double reduced = e.b == contact::no_body ? a : a * mass[e.b] / (a + mass[e.b]);
-          const contact::DampingRatios beta = law.damping();
-          found = {.beta_n = beta.normal,
-                   .beta_s = beta.shear,
-                   .normal = 2 * beta.normal * std::sqrt(reduced * e.stiffness.normal),
-                   .shear = 2 * beta.shear * std::sqrt(reduced * e.stiffness.shear)};
-          if constexpr (std::is_same_v<Which, WithinRooms>) {  // √k has the root of the factor only
-            const double root = std::sqrt(which.factor(pair, e.b != contact::no_body));
-            found.normal *= root;
-            found.shear *= root;
-          }
-        }
-      });
+  for_each_element(model, which, [&](const auto& law, const contact::ContactElement& element) {
+    damping.push_back(dashpots_of(law, element, model.bodies.mass));
+  });
   return damping;
 }
 
@@ -79,12 +64,6 @@ std::vector<contact::ContactElement> viscous_elements(const LinearSystem& system
 }
 
 LinearSystem::LinearSystem(const Model& model, Listed which)
-    : elements(contact_elements(model, which)),
-      damping(contact_damping(model, which)),
-      unknowns(model.bodies, elements),
-      mass(mass_diagonal(model.bodies, unknowns)) {}
-
-LinearSystem::LinearSystem(const Model& model, const WithinRooms& which)
     : elements(contact_elements(model, which)),
       damping(contact_damping(model, which)),
       unknowns(model.bodies, elements),

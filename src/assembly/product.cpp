@@ -15,16 +15,16 @@
 namespace eigengrain::assembly {
 namespace product {
 
-extern const Kernel kernel_baseline;
+extern const Kernel product_kernel_baseline;
 #ifdef EIGENGRAIN_KERNEL_AVX2
-extern const Kernel kernel_avx2;
+extern const Kernel product_kernel_avx2;
 #endif
 
 const Kernel& best_kernel() {
 #ifdef EIGENGRAIN_KERNEL_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return kernel_avx2;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return product_kernel_avx2;
 #endif
-  return kernel_baseline;
+  return product_kernel_baseline;
 }
 
 }  // namespace product

@@ -61,6 +61,15 @@ std::vector<ActingContact> acting_contacts(const assembly::Model& model) {
     found.normal = geometry.normal;
     found.force = contact::force_now(group.law, placement, pair, geometry, group.states[c]).force;
     found.b = Kinematics::second_is_body ? bodies.clumps.owner(pair.b) : ActingContact::wall;
+    found.ball_a = pair.a;
+    found.image = pair.image;
+    found.overlap = geometry.overlap;
+    found.point = bodies.position[static_cast<std::size_t>(pair.a)] + geometry.lever_a;
+    found.rule = group.rule;
+    if constexpr (Kinematics::second_is_body)
+      found.ball_b = pair.b;
+    else
+      found.ball_b = Kinematics::wall(placement, pair);
     if constexpr (Kinematics::second_is_body)
       found.branch =
           geometry.branch() + assembly::lever_of(bodies, pair.a) - assembly::lever_of(bodies, pair.b);

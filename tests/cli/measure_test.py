@@ -158,10 +158,11 @@ class Measures(ProgramTest):
         self.assertGreater(ledger["slip_loss"], 0)
         self.assertEqual(rows[0]["balance error [J]"], 0)
         # The balls start at once with what is not balanced: the first step errs by 1/8 dt^2 a·M a, and all that
-        # follows by next to nothing.
+        # follows by little: a contact that opens or closes changes its energy, here some 1e-8 J, by up to a tenth of it
+        # (1/4 dt^2 k/m), and a few do.
         turned_over = ledger["gravity_work"] + rows[0]["elastic normal [J]"]
         self.assertLess(abs(rows[1]["balance error [J]"]), 1e-3 * turned_over)
-        self.assertLess(abs(last["balance error [J]"] - rows[1]["balance error [J]"]), 1e-5 * ledger["gravity_work"])
+        self.assertLess(abs(last["balance error [J]"] - rows[1]["balance error [J]"]), 5e-5 * ledger["gravity_work"])
 
     def test_of_a_column_with_all_that_there_is(self):
         """Glued balls with dashpots at rest on a polygon in a periodic cell, under local damping."""

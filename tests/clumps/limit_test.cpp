@@ -5,6 +5,7 @@
 #include "support/clumps.hpp"
 #include "support/motion.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <algorithm>

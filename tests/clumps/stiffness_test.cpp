@@ -6,6 +6,7 @@
 
 #include "support/clumps.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>

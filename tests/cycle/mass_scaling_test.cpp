@@ -11,6 +11,7 @@
 #include "support/restart.hpp"
 #include "support/scaled_heap.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <algorithm>

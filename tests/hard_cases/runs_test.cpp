@@ -56,11 +56,13 @@ const std::vector<Run>& runs() {
       {.scene = ten,
        .steps = 1000,
        .energy = 10,
+       .safety_of_tracked = 0.6,
        .name = "fast",
        .overrides = {"balls.0.velocity=[0, 0, -0.5]"}},
       {.scene = ten,
        .steps = 1000,
        .energy = 10,
+       .safety_of_tracked = 0.6,
        .name = "faster",
        .overrides = {"balls.0.velocity=[0, 0, -1]"}},
       // With more the fragments fly by a tenth of their radius in a step, which the watch does not let pass.

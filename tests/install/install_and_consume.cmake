@@ -29,6 +29,16 @@ if(NOT output MATCHES "${VERSION}")
   message(FATAL_ERROR "the installed program says version ${output}, not ${VERSION}")
 endif()
 
+if(PYTHON)
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${prefix}/${PACKAGE_DIR} PYTHONDONTWRITEBYTECODE=1
+      ${PYTHON} -c "import eigengrain, eigengrain.plot; print(eigengrain.__version__, eigengrain.__file__)"
+    WORKING_DIRECTORY ${WORK} OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT output MATCHES "^${VERSION} ${prefix}/")
+    message(FATAL_ERROR "the installed Python package is another one: ${output}")
+  endif()
+endif()
+
 # Nothing installed may point back to the source or the build.
 get_filename_component(source ${CONSUMER}/../../.. ABSOLUTE)
 file(GLOB_RECURSE installed ${prefix}/*.cmake)

@@ -3,8 +3,6 @@
 #include "eigengrain/assembly/eigen_matrix.hpp"
 #include "eigengrain/assembly/linear_system.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -13,30 +11,12 @@
 namespace eigengrain::test {
 
 /// 2/√λ_max, undamped.
-inline double dense_truth(const assembly::LinearSystem& system) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(assembly::dense_scaled_stiffness(system),
-                                                              Eigen::EigenvaluesOnly);
-  return 2 / std::sqrt(solver.eigenvalues().tail<1>()[0]);
-}
+double dense_truth(const assembly::LinearSystem& system);
 
 /// 2/μ, μ the largest root of det(μ² M' - μ C - K) = 0, M' = M/(1 + α), by the companion matrix of the whole
 /// quadratic problem.
 ///
 /// local_damping  [bodies] α of each, or empty where none is damped
-inline double dense_limit(const assembly::LinearSystem& system, std::span<const double> local_damping) {
-  Eigen::MatrixXd k = assembly::dense_scaled_stiffness(system);
-  Eigen::MatrixXd c = assembly::dense_scaled_stiffness(assembly::with_viscosity(system, 1.0)) - k;
-  const Eigen::Index n = k.rows();
-  Eigen::VectorXd scale = Eigen::VectorXd::Ones(n);
-  const std::vector<std::int32_t> free = system.unknowns.free_components();
-  for (std::size_t i = 0; i < free.size() && !local_damping.empty(); ++i)
-    scale[static_cast<Eigen::Index>(i)] =
-        std::sqrt(1 + local_damping[static_cast<std::size_t>(system.unknowns.body(free[i] / 3))]);
-  Eigen::MatrixXd companion = Eigen::MatrixXd::Zero(2 * n, 2 * n);  // of (x, μx)
-  companion.topRightCorner(n, n).setIdentity();
-  companion.bottomLeftCorner(n, n) = scale.asDiagonal() * k * scale.asDiagonal();
-  companion.bottomRightCorner(n, n) = scale.asDiagonal() * c * scale.asDiagonal();
-  return 2 / Eigen::EigenSolver<Eigen::MatrixXd>(companion, false).eigenvalues().real().maxCoeff();
-}
+double dense_limit(const assembly::LinearSystem& system, std::span<const double> local_damping);
 
 }  // namespace eigengrain::test

@@ -5,8 +5,6 @@
 
 #include "support/scenes.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,14 +15,10 @@
 /// Scenes of a few bodies in motion, for tests of the cycle.
 namespace eigengrain::test {
 
-inline cycle::TimestepPolicy fixed_step(double dt) {
-  return {[dt](const assembly::State&) { return dt; }, 0};
-}
+cycle::TimestepPolicy fixed_step(double dt);
 
 /// A scene at its start, with a fixed step.
-inline cycle::Cycle cycle_of(SceneBuilder builder, double dt) {
-  return cycle::Cycle(cycle::start(builder.scene()), fixed_step(dt));
-}
+cycle::Cycle cycle_of(SceneBuilder builder, double dt);
 
 /// Row of a body by its place in the scene: bodies are stored in an order of their own.
 inline std::size_t row_of(const assembly::State& state, std::int64_t identity) {
@@ -46,24 +40,10 @@ struct MeanMotion {
   double speed = 0;    ///< along x
   double surface = 0;  ///< along x, of its lowest point; for a radius of one
 };
-inline MeanMotion mean_motion(cycle::Cycle& cycle, int steps) {
-  MeanMotion mean;
-  for (int k = 0; k < steps; ++k) {
-    cycle.step();
-    mean.speed += velocity_of(cycle.state(), 0).x() / steps;
-    mean.surface += (velocity_of(cycle.state(), 0).x() - spin_of(cycle.state(), 0).y()) / steps;
-  }
-  return mean;
-}
+MeanMotion mean_motion(cycle::Cycle& cycle, int steps);
 
 /// Positions in the order of the scene.
-inline std::vector<Vec3> positions_of(const assembly::State& state) {
-  const model::Bodies& bodies = state.model.bodies;
-  std::vector<Vec3> result(bodies.position.size());
-  for (std::size_t i = 0; i < result.size(); ++i)
-    result[static_cast<std::size_t>(bodies.identity[i])] = bodies.position[i];
-  return result;
-}
+std::vector<Vec3> positions_of(const assembly::State& state);
 
 /// Calls visitor(pair, state) for every listed contact whose law has a shear force.
 template <class Visitor>
@@ -75,21 +55,12 @@ void for_each_shear(const assembly::Model& model, const Visitor& visitor) {
 }
 
 /// Shear forces of all listed contacts, in their order.
-inline std::vector<Vec3> shears_of(const assembly::State& state) {
-  std::vector<Vec3> result;
-  for_each_shear(state.model, [&](const auto&, const auto& s) { result.push_back(s.shear); });
-  return result;
-}
+std::vector<Vec3> shears_of(const assembly::State& state);
 
 /// The modes of a system, M-orthonormal, and the way between modes and motions of bodies.
 class Modes {
  public:
-  explicit Modes(const System& system) : system_(system), free_(system.unknowns.free_components()) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(assembly::dense_scaled_stiffness(system));
-    lambda_ = solver.eigenvalues();
-    shape_ = solver.eigenvectors();  // of M^-½ K M^-½
-    for (Eigen::Index r = 0; r < shape_.rows(); ++r) shape_.row(r) /= std::sqrt(mass(r));
-  }
+  explicit Modes(const System& system);
 
   const Eigen::VectorXd& lambda() const { return lambda_; }
   double lambda_max() const { return lambda_[lambda_.size() - 1]; }

@@ -28,7 +28,7 @@ inline void expect_to_continue(const model::Scene& scene, std::int64_t steps,
     io::write_state(first.state(), file);
     assembly::State read = io::read_state(file);
     EXPECT_EQ(bits_of(read), bits_of(first.state())) << stop;
-    cycle::Cycle second(std::move(read), policy);
+    cycle::Cycle second(std::move(read), cycle::policy_of(scene));  // that has kept nothing
     second.run(steps - stop);
     EXPECT_EQ(bits_of(second.state()), bits_of(whole.state())) << stop;
   }

@@ -5,8 +5,6 @@
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/stiffness.hpp"
 
-#include <Eigen/Eigenvalues>
-
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -171,21 +169,14 @@ struct System : WithModel, assembly::LinearSystem {
   explicit System(const SceneBuilder& builder) : System(builder.build()) {}
 
   /// All eigenvalues of M⁻¹K on the free components, increasing.
-  Eigen::VectorXd spectrum() const {
-    const Eigen::MatrixXd a = assembly::dense_scaled_stiffness(*this);
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
-  }
+  Eigen::VectorXd spectrum() const;
 };
 
 constexpr model::FixedComponents fix_rotations{0b111000};
 constexpr model::FixedComponents fix_all{0b111111};
 
 /// A proper rotation, uniform over all orientations.
-inline Mat3 random_rotation(std::mt19937_64& random) {
-  std::normal_distribution<double> gaussian;
-  Eigen::Quaterniond q(gaussian(random), gaussian(random), gaussian(random), gaussian(random));
-  return q.normalized().toRotationMatrix();
-}
+Mat3 random_rotation(std::mt19937_64& random);
 
 inline Vec3 random_vector(std::mt19937_64& random) {
   std::normal_distribution<double> gaussian;
@@ -195,29 +186,7 @@ inline Vec3 random_vector(std::mt19937_64& random) {
 /// A cluster grown ball by ball: each new ball touches one that is there, with some overlap; others that come
 /// too near are kept as they come. Radii within a factor `spread`, densities equal, a ball fixed (some or all
 /// components) with probability `fixed`.
-inline SceneBuilder random_cluster(std::mt19937_64& random, int balls, const Springs& springs,
-                                   double spread = 2, double fixed = 0) {
-  std::uniform_real_distribution<double> uniform(0, 1);
-  SceneBuilder builder(springs);
-  std::vector<Vec3> centres;
-  std::vector<double> radii;
-  for (int i = 0; i < balls; ++i) {
-    const double radius = std::pow(spread, uniform(random));
-    Vec3 centre = Vec3::Zero();
-    if (i > 0) {
-      const auto host = static_cast<std::size_t>(uniform(random) * i);
-      const double gap = -0.05 * uniform(random) * std::min(radius, radii[host]);
-      centre = centres[host] + (radii[host] + radius + gap) * random_vector(random).normalized();
-    }
-    model::FixedComponents bits;
-    if (uniform(random) < fixed)
-      bits =
-          uniform(random) < 0.5 ? fix_all : model::FixedComponents(static_cast<std::uint8_t>(random() % 64));
-    builder.ball(centre, radius, radius * radius * radius, bits);
-    centres.push_back(centre);
-    radii.push_back(radius);
-  }
-  return builder;
-}
+SceneBuilder random_cluster(std::mt19937_64& random, int balls, const Springs& springs, double spread = 2,
+                            double fixed = 0);
 
 }  // namespace eigengrain::test

@@ -7,6 +7,7 @@
 #include "support/clumps.hpp"
 #include "support/lattices.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>

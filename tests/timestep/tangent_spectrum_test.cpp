@@ -7,6 +7,7 @@
 #include "support/motion.hpp"
 #include "support/tangents.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -106,7 +106,7 @@ TEST(StateFile, OverridesAct) {
     if (const auto* sand = std::get_if<contact::ContactGroup<contact::BallBall, contact::Linear>>(&group);
         sand != nullptr && sand->rule == 0) {
       found = true;
-      EXPECT_EQ(sand->law.stiffness({}, {}).normal, 3e5);
+      EXPECT_EQ(sand->law.stiffness(contact::ContactMotion{}, contact::Linear::State{}).normal, 3e5);
       EXPECT_EQ(sand->states.at(0).shear, Vec3(1.0 / 3, -0.0, 1e-310));
     }
   EXPECT_TRUE(found);

@@ -80,21 +80,32 @@ struct BodyForces {
   std::vector<Vec3> moment;  ///< empty where nothing turns
 };
 
+namespace kernel {
+struct BodyPlace;
+struct BodyMotion;
+struct BodySum;
+}  // namespace kernel
+
 /// The sum of contact forces on every body, for one contact graph: the work of the explicit cycle and of a
 /// residual. Threads share fixed chunks of bodies; a contact is evaluated once, in the chunk of its first
 /// body, and what it does to a body of another chunk is kept and added in the end. So every sum has one order
 /// (the order of the contacts), and the result is the same to the bit on any number of threads. Nothing is
-/// allocated after construction. Cost O(contacts).
+/// allocated after the first call. Cost O(contacts).
 class ContactForceSum {
  public:
   /// turns  whether moments are wanted
   ContactForceSum(const Model& model, bool turns);
+  ~ContactForceSum();
+  ContactForceSum(ContactForceSum&&) noexcept;
+  ContactForceSum& operator=(ContactForceSum&&) noexcept;
 
   /// Forces after a trial displacement. Nothing is stored in the contacts: the same call with the same
   /// displacement gives the same forces.
   void evaluate(const Model& model, const Trial& trial, BodyForces& sum);
   /// The same, and the contacts remember: the trial displacement becomes the committed state. What they
-  /// dissipate on the way is added to `dissipated` if it is given; if not, it is not computed.
+  /// dissipate on the way is added to `dissipated` if it is given; if not, it is not computed. Contacts of
+  /// balls are evaluated several at a time (src/assembly/force_kernel.hpp), so that forces agree with those
+  /// of evaluate() to rounding. Between two calls nobody else may change the states of contacts.
   void advance(Model& model, const Trial& trial, BodyForces& sum, contact::Dissipation* dissipated = nullptr);
 
   /// Bonds that broke in the last `advance`, in the order of the contacts; steps, times and
@@ -105,15 +116,26 @@ class ContactForceSum {
   /// A group's contacts by chunk of their first body, and where each puts its force on a body elsewhere.
   struct GroupPlan {
     std::vector<std::int64_t> starts;  ///< [chunks + 1]
-    std::vector<std::int32_t> slot;    ///< [contacts] into foreign_force_, or own_chunk; empty for walls
+    std::vector<std::int32_t> slot;    ///< [contacts] into foreign_, or own_chunk; empty for walls
+    std::vector<std::uint8_t> active;  ///< [contacts] whether it may act though apart; empty for scalar loops
+    std::vector<std::vector<BondBreak>> broken;  ///< [chunks] in the last advance; empty where nothing breaks
   };
-  static constexpr std::int32_t own_chunk = -1;
+  /// The bodies whose sums are at hand.
+  struct Chunk {
+    std::int64_t index;
+    std::int64_t first_body;
+    kernel::BodySum* sums;  ///< [bodies of the chunk]
+  };
 
-  template <bool turns, bool commit, class ModelRef>
+  template <bool commit, class ModelRef>
   void sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum);
-  template <bool turns, bool commit, class Group>
-  void sum_group(const GroupPlan& plan, Group& group, const model::Bodies& bodies,
-                 const contact::Placement& placement, const Trial& trial, BodyForces& sum);
+  template <bool commit, class Group>
+  void sum_group(GroupPlan& plan, Group& group, const Model& model, const contact::Placement& placement,
+                 const Trial& trial, const Chunk& chunk);
+  template <bool commit, class Group>
+  void sum_one_by_one(GroupPlan& plan, Group& group, const model::Bodies& bodies,
+                      const contact::Placement& placement, const Trial& trial, const Chunk& chunk);
+  void pack_bodies(const Model& model, const Trial& trial);
   void add_foreign(BodyForces& sum) const;
   /// Decides which triangles of surfaces are contacts.
   void follow_facets(Model& model, const contact::Placement& placement) const;
@@ -122,10 +144,10 @@ class ContactForceSum {
   bool turns_ = false;
   std::vector<GroupPlan> plans_;
   std::vector<std::int32_t> foreign_starts_;  ///< [bodies + 1] slots of a body
-  std::vector<Vec3> foreign_force_;           ///< [slots]
-  std::vector<Vec3> foreign_moment_;
+  std::vector<kernel::BodySum> foreign_;      ///< [slots]
+  std::vector<kernel::BodyPlace> places_;     ///< [bodies] or empty: no kernel asks
+  std::vector<kernel::BodyMotion> motions_;   ///< the same
   std::vector<BondBreak> broken_;
-  std::vector<std::vector<BondBreak>> broken_in_chunk_;  ///< of the group at hand
 };
 
 /// Finds the forces of a state anew from where everything is, as of contacts that stand still: springs keep

@@ -3,7 +3,6 @@
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/stiffness.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
-#include "eigengrain/assembly/within_rooms.hpp"
 #include "eigengrain/contact/element.hpp"
 
 #include <vector>
@@ -17,7 +16,6 @@ bool has_dashpots(const Model& model);
 /// are asked about. It owns what it holds; the model may go.
 struct LinearSystem {
   explicit LinearSystem(const Model& model, Listed which = Listed::acting);
-  LinearSystem(const Model& model, const WithinRooms& which);
 
   std::vector<contact::ContactElement> elements;
   /// [elements] the dashpots of the elements; empty where no contact has any.

@@ -13,9 +13,9 @@ namespace eigengrain::assembly {
 /// The force of local damping on one component: -α|F| sign(v) (PFC3D eq. 1.47), F the resultant with gravity,
 /// N or N m.
 inline double local_damping_force(double force, double velocity, double alpha) {
-  if (velocity > 0) return -alpha * std::abs(force);
-  if (velocity < 0) return alpha * std::abs(force);
-  return 0.0;
+  // Without a branch on the sign, which nobody can predict.
+  const double against = std::copysign(alpha * force, velocity);
+  return velocity == 0 ? 0.0 : -against;
 }
 
 /// The same of a moment on a clump (N m, along the axes of space), which acts along the principal axes; where

@@ -26,32 +26,37 @@ enum class Listed { acting, all };
 
 /// Whether a contact counts; its overlap becomes the one at which it is judged.
 template <class Law>
-bool counts(Listed which, const Law& law, const typename Law::State& state, const contact::Pair& /*pair*/,
-            bool /*with_ball*/, contact::ContactMotion& motion) {
+bool counts(Listed which, const Law& law, const typename Law::State& state, contact::ContactMotion& motion) {
   if (law.acts(motion, state)) return true;
   motion.overlap = typical_overlap * motion.reduced_radius;
   return which == Listed::all;
 }
+
+/// Whether a listed pair can be an element at all: of the facets near a ball only those that it can touch
+/// together, now, and of the bonds beside a law those that hold, as none ever acts again.
+template <class Group>
+bool is_element(const Group& group, std::size_t c) {
+  if constexpr (std::is_same_v<typename Group::KinematicsType, contact::BallFacet>)
+    return group.pairs[c].is_contact();
+  else if constexpr (contact::is_beside_law<typename Group::LawType>)
+    return group.states[c].bonded();
+  else
+    return true;
+}
+
 /// Calls visit(law, element), or visit(law, element, pair), for every contact that counts, group after group,
 /// in the order of the contacts. An end at a ball of a clump is one at the clump's holder, with the lever
 /// from the clump's centre. Cost O(contacts); nothing is allocated here.
-///
-/// which  Listed or WithinRooms (assembly/within_rooms.hpp)
-template <class Which, class Visit>
-void for_each_element(const Model& model, const Which& which, const Visit& visit) {
+template <class Visit>
+void for_each_element(const Model& model, Listed which, const Visit& visit) {
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      // Of the facets near a ball only those that it can touch together, now.
-      if (std::is_same_v<Kinematics, contact::BallFacet> && !group.pairs[c].is_contact()) continue;
+      if (!is_element(group, c)) continue;
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
-      // A bond beside a law that broke never acts again.
-      if constexpr (contact::BondLaw<typename std::decay_t<decltype(group)>::LawType>)
-        if (group.law.additive && !group.states[c].bonded()) continue;
       contact::ContactMotion motion = contact::at_rest(geometry);
-      if (!counts(which, group.law, group.states[c], group.pairs[c], Kinematics::second_is_body, motion))
-        continue;
+      if (!counts(which, group.law, group.states[c], motion)) continue;
       contact::ContactElement element{
           .a = group.pairs[c].a,
           .b = Kinematics::second_is_body ? group.pairs[c].b : contact::no_body,
@@ -60,8 +65,6 @@ void for_each_element(const Model& model, const Which& which, const Visit& visit
           .lever_b = geometry.lever_b,
           .stiffness = group.law.stiffness(motion, group.states[c]),
       };
-      if constexpr (requires { which.factor(group.pairs[c], true); })
-        element.stiffness = which.factor(group.pairs[c], Kinematics::second_is_body) * element.stiffness;
       if (!model.bodies.clumps.empty()) {
         element.lever_a += lever_of(model.bodies, element.a);
         element.a = model.bodies.clumps.owner(element.a);
@@ -81,8 +84,8 @@ void for_each_element(const Model& model, const Which& which, const Visit& visit
 
 /// Hands the elastic stiffness of every contact to the sink, in the order of the contacts. Does not know what
 /// the sink fills.
-template <StiffnessSink Sink, class Which = Listed>
-void assemble_stiffness(const Model& model, Sink& sink, const Which& which = Listed::acting) {
+template <StiffnessSink Sink>
+void assemble_stiffness(const Model& model, Sink& sink, Listed which = Listed::acting) {
   for_each_element(model, which,
                    [&](const auto& /*law*/, const contact::ContactElement& element) { sink.add(element); });
 }
@@ -94,9 +97,8 @@ struct ElementList {
 };
 
 /// The stiffness of the contacts as a list.
-template <class Which = Listed>
-std::vector<contact::ContactElement> contact_elements(const Model& model,
-                                                      const Which& which = Listed::acting) {
+inline std::vector<contact::ContactElement> contact_elements(const Model& model,
+                                                             Listed which = Listed::acting) {
   ElementList list;
   list.elements.reserve(static_cast<std::size_t>(model.contacts.size()));
   assemble_stiffness(model, list, which);

@@ -7,6 +7,9 @@
 namespace eigengrain {
 
 using Vec3 = Eigen::Vector3d;
+/// Of doubles, or of packs of them (base/pack.hpp).
+template <class Real>
+using Vec3Of = Eigen::Matrix<Real, 3, 1>;
 using Mat3 = Eigen::Matrix3d;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;

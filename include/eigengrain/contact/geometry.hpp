@@ -3,6 +3,8 @@
 #include "eigengrain/base/vec.hpp"
 #include "eigengrain/model/surroundings.hpp"
 
+#include <cmath>
+
 namespace eigengrain::contact {
 
 /// The part of the overlap that the lever of a ball is shorter than its radius: to the contact point.
@@ -11,27 +13,35 @@ inline constexpr double to_contact_point = 0.5;
 inline constexpr double to_surface = 0;
 
 /// Where two sides touch (PFC3D eqs. 1.5-1.8).
-struct ContactGeometry {
-  Vec3 normal;                    ///< n, unit, from the first side to the second
-  double overlap;                 ///< U, m; positive when the surfaces interpenetrate
-  Vec3 lever_a;                   ///< R_a = x_C - x_a, m
-  Vec3 lever_b;                   ///< R_b = x_C - x_b, m; from a wall's centre where the second side is one
-  double reduced_radius;          ///< R*, 1/R* = Σ 1/R, m; a wall is flat
+template <class Real>
+struct GeometryOf {
+  Vec3Of<Real> normal;            ///< n, unit, from the first side to the second
+  Real overlap;                   ///< U, m; positive when the surfaces interpenetrate
+  Vec3Of<Real> lever_a;           ///< R_a = x_C - x_a, m
+  Vec3Of<Real> lever_b;           ///< R_b = x_C - x_b, m; from a wall's centre where the second side is one
+  Real reduced_radius;            ///< R*, 1/R* = Σ 1/R, m; a wall is flat
   double cut = to_contact_point;  ///< of the overlap, from the levers
 
   /// From the centre of the first side to that of the second, m.
-  Vec3 branch() const { return lever_a - lever_b - (1 - 2 * cut) * overlap * normal; }
+  Vec3Of<Real> branch() const { return lever_a - lever_b - (1 - 2 * cut) * overlap * normal; }
 };
+using ContactGeometry = GeometryOf<double>;
 
-/// Two balls: n = (x_b - x_a)/d, U = r_a + r_b - d, x_C = x_a + (r_a - U/2) n.
-/// x_b is the centre of the image that touches. Centres must differ.
+/// Two balls whose centres are `branch` = x_b - x_a apart: n = branch/d, U = r_a + r_b - d, x_C = x_a + (r_a
+/// - U/2) n. x_b is the centre of the image that touches. Centres must differ.
+template <class Real>
+GeometryOf<Real> balls_apart(const Vec3Of<Real>& branch, const Real& r_a, const Real& r_b, double cut) {
+  using std::sqrt;
+  const Real distance = sqrt(branch.squaredNorm());
+  const Vec3Of<Real> n = (1 / distance) * branch;
+  const Real overlap = r_a + r_b - distance;
+  return {n, overlap, (r_a - cut * overlap) * n, -(r_b - cut * overlap) * n, r_a * r_b / (r_a + r_b), cut};
+}
+
+/// The same by where their centres are.
 inline ContactGeometry ball_ball(const Vec3& x_a, double r_a, const Vec3& x_b, double r_b,
                                  double cut = to_contact_point) {
-  const Vec3 branch = x_b - x_a;
-  const double distance = branch.norm();
-  const Vec3 n = branch / distance;
-  const double overlap = r_a + r_b - distance;
-  return {n, overlap, (r_a - cut * overlap) * n, -(r_b - cut * overlap) * n, r_a * r_b / (r_a + r_b), cut};
+  return balls_apart<double>(x_b - x_a, r_a, r_b, cut);
 }
 
 /// A ball and a one-sided plane: n = -(normal of the plane), d the signed distance of the centre from it,

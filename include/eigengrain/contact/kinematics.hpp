@@ -182,14 +182,17 @@ struct BallFacet {
 using KinematicsTypes = TypeList<BallBall, BallPlane, BallFacet>;
 
 /// Displacement and rotation of one side since the committed state.
-struct SideMotion {
-  Vec3 translation = Vec3::Zero();  ///< u, m
-  Vec3 rotation = Vec3::Zero();     ///< θ, rad
+template <class Real>
+struct SideMotionIn {
+  Vec3Of<Real> translation = Vec3Of<Real>::Zero();  ///< u, m
+  Vec3Of<Real> rotation = Vec3Of<Real>::Zero();     ///< θ, rad
 };
+using SideMotion = SideMotionIn<double>;
 
 /// δ = (u_b + θ_b × R_b) - (u_a + θ_a × R_a), φ = θ_b - θ_a, with the levers of the present geometry.
-inline ContactMotion contact_motion(const ContactGeometry& geometry, const SideMotion& a,
-                                    const SideMotion& b) {
+template <class Real>
+MotionIn<Real> contact_motion(const GeometryOf<Real>& geometry, const Same<SideMotionIn<Real>>& a,
+                              const Same<SideMotionIn<Real>>& b) {
   return {.normal = geometry.normal,
           .overlap = geometry.overlap,
           .displacement = (b.translation + b.rotation.cross(geometry.lever_b)) -
@@ -204,20 +207,18 @@ inline ContactMotion contact_motion(const ContactGeometry& geometry, const SideM
 /// on to the end of the step, with the contact plane and by the second half of the spin about n: left where
 /// it was, it would err by Δt² a step, and the cycle would be of first order. Laws may take all parts along
 /// the present n.
-template <class Kinematics>
-ContactMotion mid_step_motion(const Placement& placement, const Pair& pair, const ContactGeometry& geometry,
-                              const SideMotion& a, const SideMotion& b) {
-  const ContactGeometry middle =
-      Kinematics::geometry_before(placement, pair, 0.5 * a.translation, 0.5 * b.translation);
-  const Vec3& n = geometry.normal;
-  ContactMotion motion = contact_motion(middle, a, b);
+template <class Real>
+MotionIn<Real> mid_step_motion(const GeometryOf<Real>& geometry, const GeometryOf<Real>& middle,
+                               const Same<SideMotionIn<Real>>& a, const Same<SideMotionIn<Real>>& b) {
+  const Vec3Of<Real>& n = geometry.normal;
+  MotionIn<Real> motion = contact_motion<Real>(middle, a, b);
   motion.normal = n;
   motion.overlap = geometry.overlap;
   motion.reduced_radius = geometry.reduced_radius;
-  motion.displacement = rotate_onto(motion.displacement, middle.normal, n);
-  motion.rotation = rotate_onto(motion.rotation, middle.normal, n);
-  motion.displacement += 0.5 * motion.spin * n.cross(motion.displacement);
-  motion.rotation += 0.5 * motion.spin * n.cross(motion.rotation);
+  motion.displacement = rotate_onto<Real>(motion.displacement, middle.normal, n);
+  motion.rotation = rotate_onto<Real>(motion.rotation, middle.normal, n);
+  motion.displacement += (0.5 * motion.spin * n.cross(motion.displacement)).eval();
+  motion.rotation += (0.5 * motion.spin * n.cross(motion.rotation)).eval();
   return motion;
 }
 
@@ -236,7 +237,10 @@ MotionOf<Law> motion_for(const Law& law, const Placement& placement, const Pair&
   if constexpr (in_total_form<Law>)
     return pose_of(placement, pair, geometry);
   else
-    return law.mid_step() ? mid_step_motion<Kinematics>(placement, pair, geometry, a, b)
+    return law.mid_step() ? mid_step_motion(geometry,
+                                            Kinematics::geometry_before(placement, pair, 0.5 * a.translation,
+                                                                        0.5 * b.translation),
+                                            a, b)
                           : contact_motion(geometry, a, b);
 }
 
@@ -252,15 +256,18 @@ double reduced_mass(const Placement& placement, const Pair& pair) {
 }
 
 /// What a contact does to its ends: force (N) and moment about the centre (N m) on each.
-struct EndForces {
-  Vec3 force_a;
-  Vec3 moment_a;
-  Vec3 force_b;
-  Vec3 moment_b;
+template <class Real>
+struct EndForcesIn {
+  Vec3Of<Real> force_a;
+  Vec3Of<Real> moment_a;
+  Vec3Of<Real> force_b;
+  Vec3Of<Real> moment_b;
 };
+using EndForces = EndForcesIn<double>;
 
 /// The transpose of contact_motion (Bᵀ, PFC3D eq. 1.20): -F at the first end, +F at the second.
-inline EndForces end_forces(const ContactGeometry& geometry, const ContactForce& f) {
+template <class Real>
+EndForcesIn<Real> end_forces(const GeometryOf<Real>& geometry, const Same<ForceIn<Real>>& f) {
   return {.force_a = -f.force,
           .moment_a = -geometry.lever_a.cross(f.force) - f.moment,
           .force_b = f.force,

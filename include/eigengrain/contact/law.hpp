@@ -22,18 +22,30 @@
 /// that of the first side on the second, so a compressive force has F·n > 0.
 namespace eigengrain::contact {
 
-/// What a law may know about its contact.
-struct ContactMotion {
-  Vec3 normal = Vec3::Zero();  ///< n now, unit
-  double overlap = 0;          ///< U now, m; positive when the surfaces interpenetrate
-  Vec3 displacement =
-      Vec3::Zero();              ///< increment of the relative displacement δ since the committed state, m
-  Vec3 rotation = Vec3::Zero();  ///< increment of the relative rotation φ, rad
-  double spin = 0;               ///< increment of the mean rotation ½(θ_1 + θ_2) about n, rad
-  double reduced_radius = 0;     ///< R* of the sides, 1/R* = Σ 1/R, m; a wall is flat
+/// What a law may know about its contact; with Real a Pack, about several at once.
+template <class Real>
+struct MotionIn {
+  using Vector = Vec3Of<Real>;
+
+  Vector normal = Vector::Zero();  ///< n now, unit
+  Real overlap = 0;                ///< U now, m; positive when the surfaces interpenetrate
+  Vector displacement =
+      Vector::Zero();  ///< increment of the relative displacement δ since the committed state, m
+  Vector rotation = Vector::Zero();  ///< increment of the relative rotation φ, rad
+  Real spin = 0;                     ///< increment of the mean rotation ½(θ_1 + θ_2) about n, rad
+  Real reduced_radius = 0;           ///< R* of the sides, 1/R* = Σ 1/R, m; a wall is flat
   /// For laws that ask for the rate (asks_rate) alone.
-  Vec3 velocity = Vec3::Zero();  ///< of δ, m/s; zero where nothing moves in time, as in Newton's method
-  double reduced_mass = 0;       ///< m_1 m_2/(m_1 + m_2), at a wall the ball's, kg
+  Vector velocity = Vector::Zero();  ///< of δ, m/s; zero where nothing moves in time, as in Newton's method
+  Real reduced_mass = 0;             ///< m_1 m_2/(m_1 + m_2), at a wall the ball's, kg
+};
+using ContactMotion = MotionIn<double>;
+
+/// Whether a law is written for several contacts at once: its acts() and evaluate() take MotionIn<Real> and
+/// StateIn<Real> for any Real, State being StateIn<double>. What evaluate() gives for lanes that do not act
+/// is left out by the caller. Other laws are asked for one contact after the other.
+template <class L>
+inline constexpr bool takes_packs = requires {
+  requires std::is_same_v<typename L::State, typename L::template StateIn<double>>;
 };
 
 /// What a law in total form knows instead: where its sides are and how they are turned, not how they came
@@ -46,24 +58,27 @@ struct ContactPose {
 };
 
 /// What acts at the contact point, of the first side on the second.
-struct ContactForce {
-  Vec3 force = Vec3::Zero();   ///< N
-  Vec3 moment = Vec3::Zero();  ///< N m, beyond that of `force` about the centres
+template <class Real>
+struct ForceIn {
+  Vec3Of<Real> force = Vec3Of<Real>::Zero();   ///< N
+  Vec3Of<Real> moment = Vec3Of<Real>::Zero();  ///< N m, beyond that of `force` about the centres
 };
+using ContactForce = ForceIn<double>;
 
 /// Elastic stiffness of a contact in its own frame (eq. 1.34): along n and across it. Isotropic across n.
-struct ContactStiffness {
-  double normal = 0;   ///< k_n, N/m
-  double shear = 0;    ///< k_s, N/m
-  double twist = 0;    ///< κ_n, N m
-  double bending = 0;  ///< κ_s, N m
+template <class Real>
+struct StiffnessIn {
+  Real normal = 0;   ///< k_n, N/m
+  Real shear = 0;    ///< k_s, N/m
+  Real twist = 0;    ///< κ_n, N m
+  Real bending = 0;  ///< κ_s, N m
 
   /// D of the relative displacement: k_n nnᵀ + k_s (1 - nnᵀ).
   Mat3 translation(const Vec3& n) const { return normal_and_shear(n, normal, shear); }
   /// D of the relative rotation: κ_n nnᵀ + κ_s (1 - nnᵀ).
   Mat3 rotation(const Vec3& n) const { return normal_and_shear(n, twist, bending); }
 
-  friend ContactStiffness operator*(double factor, const ContactStiffness& k) {
+  friend StiffnessIn operator*(double factor, const StiffnessIn& k) {
     return {factor * k.normal, factor * k.shear, factor * k.twist, factor * k.bending};
   }
 
@@ -72,6 +87,8 @@ struct ContactStiffness {
     return across * Mat3::Identity() + (along - across) * n * n.transpose();
   }
 };
+
+using ContactStiffness = StiffnessIn<double>;
 
 /// Damping ratios β of the dashpots of a contact: c = 2β√(m k), m the reduced mass and k the stiffness along
 /// n and across it (PFC3D eqs. 1.57-1.60).
@@ -189,7 +206,7 @@ concept ContactLaw = requires(const L& law, const ContactMotion& motion, const M
   /// The state of a contact that forms with this normal.
   { law.formed(motion.normal) } -> std::same_as<typename L::State>;
   /// Whether the contact transmits anything. Where it does not, force and energy are zero, and stiffness and
-  /// tangent mean nothing.
+  /// tangent mean nothing. A contact whose surfaces are apart and whose state is State{} does not act.
   { law.acts(motion, state) } -> std::same_as<bool>;
   /// Force after the motion; `next` receives the state that a commit would store.
   { law.evaluate(full, state, next) } -> std::same_as<ContactForce>;

@@ -69,13 +69,17 @@ class Cycle {
   assembly::State release() { return std::move(state_); }
 
  private:
-  /// Kick of all bodies for a duration and drift for dt; the greatest squared way from where the list was
-  /// made, in a cell that moves from where that took them, m². By what the bodies have of their own, whether
-  /// a ledger is kept, and whether the cell moves.
+  /// Kick of all bodies for a duration and drift for dt; the speed of the fastest, m/s. By what the bodies
+  /// have of their own, whether a ledger is kept, and whether the cell moves.
   template <class Cell>
   double move(double duration, double dt, const Cell& cell);
   template <class Work, class Properties, class Cell>
   double move(double duration, double dt, const Cell& cell);
+  /// How far every body may still move before one leaves its room, m; negative where one has. That is the
+  /// room of the guard, and without one `room` about where the list was made, in a cell that moves about
+  /// where that took it.
+  template <class Cell>
+  double least_slack(double room, const Cell& cell) const;
   /// Whether a body or wall has moved by half the skin since the near list was made.
   bool list_is_old() const;
   void list_anew();
@@ -85,6 +89,7 @@ class Cycle {
   TimestepPolicy policy_;
   assembly::ContactForceSum forces_;
   assembly::WallStep walls_;
+  double slack_ = 0;  ///< no body can have left its room before it has moved by this, m
 };
 
 }  // namespace eigengrain::cycle

@@ -22,12 +22,6 @@ namespace eigengrain::cycle {
 /// than one, and one where nothing would ever resist it. Cost: some ten eigenpairs a body near its limit.
 void scale_masses(assembly::State& state);
 
-/// `selective` beside policy `tracked`: proves the step by the masses as they are for all that can touch
-/// while no body leaves its room (assembly::StepGuard), and chooses masses anew, for these contacts, only
-/// where that fails. Where nothing is tracked (surfaces, cells that deform, radii that change) it is
-/// scale_masses().
-void track_masses(assembly::State& state);
-
 /// What inertial masses differ from the true ones by, of bodies that can move.
 struct ScaledMasses {
   std::int64_t bodies = 0;   ///< that can move

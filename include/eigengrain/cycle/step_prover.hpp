@@ -42,6 +42,8 @@ class StepProver {
   double sharpen(double wished, double content = 1.004);
   /// Contacts (indices of elements) that are others than they were; the next proof looks at their bodies.
   void update(std::span<const std::int32_t> contacts);
+  /// Another α for a body. Counts once update() is told of its contacts.
+  void set_damping(std::int32_t body, double local_damping);
 
   /// [bodies] d. Those of an earlier proof of nearly the same contacts save work; any that are positive will
   /// do.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/model/surroundings.hpp"
 
 #include <cstdint>
 #include <span>
@@ -17,7 +18,13 @@ struct ActingContact {
   Vec3 branch;  ///< ℓ: from the centre of a (model::centre_of) to that of b's image; at a wall, to the
                 ///< contact point, m
   Vec3 normal;  ///< n, from a to b
-  Vec3 force;   ///< F, of a on b, N
+  std::int32_t ball_a = 0;   ///< row of the first ball itself
+  std::int32_t ball_b = -1;  ///< row of the second one; the number of the wall, where it is one
+  model::Image image{};      ///< of the second side
+  double overlap = 0;        ///< U, m
+  Vec3 point;                ///< where it is: x_C, m
+  std::int32_t rule = 0;     ///< index into Scene::contacts
+  Vec3 force;                ///< F, of a on b, N
   bool slides = false;
   bool carries_moments = false;  ///< a bond that holds all six components, alone
 };

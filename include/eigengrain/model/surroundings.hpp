@@ -59,7 +59,8 @@ struct PeriodicCell {
   Mat3 flow_gradient() const;
 
   /// Translation from the cell to its image, m. Written out, so that it is the same to the bit wherever it is
-  /// asked, and exactly that of a box where the edges stand along the axes. Most contacts stay in the cell.
+  /// asked (but in kernels that fuse, src/assembly/force_kernel.hpp), and exactly that of a box where the
+  /// edges stand along the axes. Most contacts stay in the cell.
   template <class Integer>
   Vec3 shift(const std::array<Integer, 3>& image) const {
     if ((image[0] | image[1] | image[2]) == 0) return Vec3::Zero();

@@ -50,13 +50,13 @@ class Glued {
   std::optional<BreakMode> failure(const ContactMotion& motion, const State& old) const {
     if (!old.bonded()) return std::nullopt;
     State next;
-    const Response held = glued_.respond(motion, old, next);
+    const Response<double> held = glued_.respond(motion, old, next);
     return failure(held, next);
   }
 
   ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
     if (old.bonded()) {
-      const Response held = glued_.respond(motion, old, next);
+      const Response<double> held = glued_.respond(motion, old, next);
       next.bond = 1;
       if (!failure(held, next)) return held.force;
     }
@@ -136,7 +136,7 @@ class Glued {
   bool holds(const ContactMotion& motion, const State& old) const {
     return old.bonded() && !failure(motion, old);
   }
-  std::optional<BreakMode> failure(const Response& held, const State& at) const {
+  std::optional<BreakMode> failure(const Response<double>& held, const State& at) const {
     const double tensile = -held.normal_force / tension_;
     const double sheared = at.shear.norm() / shear_;
     if (std::max(tensile, sheared) < 1) return std::nullopt;

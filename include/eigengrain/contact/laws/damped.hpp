@@ -56,9 +56,12 @@ struct Dashpots {
 template <class Base>
 class Damped : public Base {
  public:
-  struct State : Base::State {
-    Vec3 viscous = Vec3::Zero();  ///< D_n + D_s of the step that led here, N, on the second side
+  template <class Real>
+  struct StateIn : Base::template StateIn<Real> {
+    Vec3Of<Real> viscous =
+        Vec3Of<Real>::Zero();  ///< D_n + D_s of the step that led here, N, on the second side
   };
+  using State = StateIn<double>;
   static constexpr auto state_fields =
       joined(Base::state_fields,
              std::array<StateField, 1>{{{.name = "viscous_force", .unit = "N", .components = 3}}});
@@ -70,15 +73,17 @@ class Damped : public Base {
   bool mid_step() const { return !Base::end_step(); }
   State formed(const Vec3& n) const { return {Base::formed(n)}; }
 
-  Response respond(const ContactMotion& motion, const State& old, State& next) const {
-    Response response = Base::respond(motion, old, next);
-    next.viscous = Vec3::Zero();
-    if (!Base::acts(motion, old)) return response;
-    next.viscous = viscous_force(motion, Base::stiffness(motion, old), response);
+  template <class Real>
+  Response<Real> respond(const MotionIn<Real>& motion, const StateIn<Real>& old, StateIn<Real>& next) const {
+    Response<Real> response = Base::template respond<Real>(motion, old, next);
+    next.viscous = Vec3Of<Real>::Zero();
+    if (none(Base::template acts<Real>(motion, old))) return response;
+    next.viscous = viscous_force(motion, Base::template stiffness<Real>(motion, old), response);
     response.force.force += next.viscous;
     return response;
   }
-  ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
+  template <class Real>
+  ForceIn<Real> evaluate(const MotionIn<Real>& motion, const StateIn<Real>& old, StateIn<Real>& next) const {
     return respond(motion, old, next).force;
   }
   /// Of the dashpots: the trapezoidal work of their forces, each half of the way with that at its own end.
@@ -115,14 +120,17 @@ class Damped : public Base {
   }
 
  private:
-  Vec3 viscous_force(const ContactMotion& motion, const ContactStiffness& k, const Response& springs) const {
-    const Vec3& n = motion.normal;
-    const double approach = motion.velocity.dot(n);
-    double normal = -2 * dashpots_.beta_n * std::sqrt(motion.reduced_mass * k.normal) * approach;
-    if (dashpots_.no_tension && !Base::tension() && springs.normal_force + normal < 0)
-      normal = -springs.normal_force;
-    const double shear =
-        springs.slides ? 0.0 : -2 * dashpots_.beta_s * std::sqrt(motion.reduced_mass * k.shear);
+  template <class Real>
+  Vec3Of<Real> viscous_force(const MotionIn<Real>& motion, const StiffnessIn<Real>& k,
+                             const Response<Real>& springs) const {
+    using std::sqrt;
+    const Vec3Of<Real>& n = motion.normal;
+    const Real approach = motion.velocity.dot(n);
+    Real normal = -2 * dashpots_.beta_n * sqrt(motion.reduced_mass * k.normal) * approach;
+    if (dashpots_.no_tension && !Base::tension())
+      normal = select(springs.normal_force + normal < 0.0, -springs.normal_force, normal);
+    const Real shear =
+        select(springs.slides, Real(0), -2 * dashpots_.beta_s * sqrt(motion.reduced_mass * k.shear));
     return normal * n + shear * (motion.velocity - approach * n);
   }
 

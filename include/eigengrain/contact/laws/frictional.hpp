@@ -1,10 +1,12 @@
 #pragma once
 
+#include "eigengrain/base/pack.hpp"
 #include "eigengrain/contact/dissipation.hpp"
 #include "eigengrain/contact/law.hpp"
 #include "eigengrain/contact/shear_transport.hpp"
 
 #include <array>
+#include <cmath>
 #include <span>
 #include <string>
 #include <string_view>
@@ -52,18 +54,23 @@ struct ShearOptions {
 
 /// Springs across n at the present overlap, and what becomes of the old shear force:
 /// F_s <- kept · carried(F_s) - k_s δ_s.
+template <class Real>
 struct ShearSprings {
-  double stiffness = 0;        ///< k_s, N/m
-  double stiffness_slope = 0;  ///< dk_s/dU, N/m²
-  double kept = 1;
-  double kept_slope = 0;  ///< d kept/dU, 1/m
+  Real stiffness = 0;        ///< k_s, N/m
+  Real stiffness_slope = 0;  ///< dk_s/dU, N/m²
+  Real kept = 1;
+  Real kept_slope = 0;  ///< d kept/dU, 1/m
 };
 
+/// Part of R* below which a difference of overlaps is rounding: the overlap itself is one of distances.
+inline constexpr double overlap_rounding = 1e-12;
+
 /// What a law found while it computed its force; laws built on it go on from there.
+template <class Real>
 struct Response {
-  ContactForce force;
-  double normal_force = 0;  ///< F_n of the springs, N
-  bool slides = false;
+  ForceIn<Real> force;
+  Real normal_force = 0;  ///< F_n of the springs, N
+  MaskOf<Real> slides{};
 };
 
 /// Springs with Coulomb slip (PFC3D eqs. 1.9-1.19), for any springs along n:
@@ -77,7 +84,7 @@ struct Response {
 /// where friction is positive.
 ///
 /// Springs say what F_n, k_s and the energy are (laws/linear.hpp, hertz.hpp, hysteretic.hpp): Params with
-/// `friction` and `shear` (ShearOptions); Memory, what they remember beside the shear force;
+/// `friction` and `shear` (ShearOptions); Memory<Real>, what they remember beside the shear force;
 /// and the functions used here, of the motion and the old memory. `lost(memory)`, where they have it, is what
 /// the springs along n have turned into heat since the contact formed.
 template <class Springs>
@@ -85,17 +92,20 @@ class Frictional {
  public:
   using Params = typename Springs::Params;
 
-  struct State {
-    Vec3 shear = Vec3::Zero();   ///< F_s, N, of the first side on the second
-    Vec3 normal = Vec3::Zero();  ///< n at the committed state; zero: the contact has not formed
-    [[no_unique_address]] typename Springs::Memory memory{};
+  template <class Real>
+  struct StateIn {
+    Vec3Of<Real> shear = Vec3Of<Real>::Zero();  ///< F_s, N, of the first side on the second
+    Vec3Of<Real> normal =
+        Vec3Of<Real>::Zero();  ///< n at the committed state; zero: the contact has not formed
+    [[no_unique_address]] typename Springs::template Memory<Real> memory{};
 
-    bool formed() const { return !normal.isZero(0); }
+    MaskOf<Real> formed() const { return (normal.x() != 0.0) | (normal.y() != 0.0) | (normal.z() != 0.0); }
   };
+  using State = StateIn<double>;
   static constexpr auto state_fields =
       joined(std::array<StateField, 2>{{{.name = "shear_force", .unit = "N", .components = 3},
                                         {.name = "normal", .unit = "", .components = 3}}},
-             Springs::Memory::fields);
+             Springs::memory_fields);
 
   explicit Frictional(const Params& params)
       : springs_(params),
@@ -115,32 +125,40 @@ class Frictional {
   /// The state of a contact that forms with normal n.
   State formed(const Vec3& n) const { return {.normal = n}; }
 
-  bool acts(const ContactMotion& motion, const State& old) const {
-    return motion.overlap > 0 || (springs_.tension() && old.formed());
+  template <class Real>
+  MaskOf<Real> acts(const MotionIn<Real>& motion, const StateIn<Real>& old) const {
+    const MaskOf<Real> touches = motion.overlap > 0.0;
+    return springs_.tension() ? touches | old.formed() : touches;
   }
 
-  Response respond(const ContactMotion& motion, const State& old, State& next) const {
-    if (!acts(motion, old)) {
-      next = State{};
-      return {};
-    }
-    const double normal_force = springs_.force(motion, old.memory);
-    next = formed(motion.normal);
+  template <class Real>
+  Response<Real> respond(const MotionIn<Real>& motion, const StateIn<Real>& old, StateIn<Real>& next) const {
+    using std::sqrt;
+    next = StateIn<Real>{};
+    if (none(acts(motion, old))) return {};
+    const Real normal_force = springs_.force(motion, old.memory);
+    const Vec3Of<Real> trial = trial_shear(motion, old);
+    const MaskOf<Real> sliding = slips(trial, normal_force);
+    next.normal = motion.normal;
     next.memory = springs_.remembered(motion, old.memory);
-    next.shear = trial_shear(motion, old);
-    const bool sliding = slips(next.shear, normal_force);
-    if (sliding) next.shear *= friction_ * normal_force / next.shear.norm();
+    next.shear = trial;
+    if (!none(sliding)) {
+      const Real within = friction_ * normal_force / sqrt(trial.squaredNorm());
+      next.shear = select<Real>(sliding, within * trial, trial);
+    }
     return {.force = {.force = normal_force * motion.normal + next.shear},
             .normal_force = normal_force,
             .slides = sliding};
   }
 
-  ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
+  template <class Real>
+  ForceIn<Real> evaluate(const MotionIn<Real>& motion, const StateIn<Real>& old, StateIn<Real>& next) const {
     return respond(motion, old, next).force;
   }
 
   /// Elastic: sticking, whatever the contact does now.
-  ContactStiffness stiffness(const ContactMotion& motion, const State& old) const {
+  template <class Real>
+  StiffnessIn<Real> stiffness(const MotionIn<Real>& motion, const StateIn<Real>& old) const {
     return springs_.stiffness(motion, old.memory);
   }
 
@@ -193,7 +211,7 @@ class Frictional {
         result.slip = 0.5 * before.dot(before / springs_.old_shear_stiffness(motion, old.memory) - way);
       return result;
     }
-    const ShearSprings shear = springs_.shear(motion, old.memory);
+    const ShearSprings<double> shear = springs_.shear(motion, old.memory);
     const Vec3 trial = trial_shear(motion, old);
     result.slip = 0.5 * (shear.kept * before + next.shear).dot(trial - next.shear) / shear.stiffness;
     if constexpr (Springs::shear_follows_overlap)
@@ -233,35 +251,40 @@ class Frictional {
   enum class Transport { rotated, small_angle, projected };
 
   /// F_s carried from the committed state to the present contact plane.
-  Vec3 carried(const ContactMotion& motion, const State& old) const {
+  template <class Real>
+  Vec3Of<Real> carried(const MotionIn<Real>& motion, const StateIn<Real>& old) const {
     if (transport_ == Transport::rotated)
-      return carry_shear(old.shear, old.normal, motion.normal, motion.spin);
-    if (transport_ == Transport::projected) return project_shear(old.shear, motion.normal);
-    return carry_shear_small_angle(old.shear, old.normal, motion.normal, motion.spin);
+      return carry_shear<Real>(old.shear, old.normal, motion.normal, motion.spin);
+    if (transport_ == Transport::projected) return project_shear<Real>(old.shear, motion.normal);
+    return carry_shear_small_angle<Real>(old.shear, old.normal, motion.normal, motion.spin);
   }
-  static Vec3 across(const ContactMotion& motion) {
+  template <class Real>
+  static Vec3Of<Real> across(const MotionIn<Real>& motion) {
     return motion.displacement - motion.displacement.dot(motion.normal) * motion.normal;
   }
 
   /// Shear force before the slip check. Zero in the step in which the contact forms.
-  Vec3 trial_shear(const ContactMotion& motion, const State& old) const {
-    if (!springs_.has_shear()) return Vec3::Zero();
-    const ShearSprings shear = springs_.shear(motion, old.memory);
-    if (!old.formed())
-      return transport_ == Transport::projected ? Vec3(-shear.stiffness * across(motion)) : Vec3::Zero();
-    return shear.kept * carried(motion, old) - shear.stiffness * across(motion);
+  template <class Real>
+  Vec3Of<Real> trial_shear(const MotionIn<Real>& motion, const StateIn<Real>& old) const {
+    using Vector = Vec3Of<Real>;
+    if (!springs_.has_shear()) return Vector::Zero();
+    const ShearSprings<Real> shear = springs_.shear(motion, old.memory);
+    const Vector increment = -shear.stiffness * across(motion);
+    const Vector first = transport_ == Transport::projected ? increment : Vector(Vector::Zero());
+    return select<Real>(old.formed(), shear.kept * carried(motion, old) + increment, first);
   }
   /// Its derivative with respect to U.
   Vec3 trial_growth(const ContactMotion& motion, const State& old) const {
     if (!springs_.has_shear() || !old.formed()) return Vec3::Zero();
-    const ShearSprings shear = springs_.shear(motion, old.memory);
+    const ShearSprings<double> shear = springs_.shear(motion, old.memory);
     return shear.kept_slope * carried(motion, old) - shear.stiffness_slope * across(motion);
   }
 
-  bool slips(const Vec3& shear, double normal_force) const {
-    if (springs_.tension()) return false;
-    const double limit = friction_ * normal_force;
-    return shear.squaredNorm() > limit * limit;
+  template <class Real>
+  MaskOf<Real> slips(const Vec3Of<Real>& shear, const Real& normal_force) const {
+    const Real limit = friction_ * normal_force;
+    const MaskOf<Real> beyond = shear.squaredNorm() > limit * limit;
+    return springs_.tension() ? MaskOf<Real>{} : beyond;
   }
 
   Springs springs_;

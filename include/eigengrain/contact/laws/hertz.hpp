@@ -43,10 +43,11 @@ class HertzSprings {
     double friction = 0;         ///< μ
     ShearOptions shear{};
   };
+  template <class Real>
   struct Memory {
-    double overlap = 0;  ///< U at the committed state, m
-    static constexpr std::array<StateField, 1> fields{{{.name = "overlap", .unit = "m"}}};
+    Real overlap = 0;  ///< U at the committed state, m
   };
+  static constexpr std::array<StateField, 1> memory_fields{{{.name = "overlap", .unit = "m"}}};
 
   explicit HertzSprings(const Params& params)
       : young_(params.effective_young), shear_(params.friction > 0 ? params.effective_shear : 0.0) {}
@@ -54,31 +55,43 @@ class HertzSprings {
   static constexpr bool tension() { return false; }
   bool has_shear() const { return shear_ > 0; }
 
-  double force(const ContactMotion& motion, Memory old) const {
+  template <class Real>
+  Real force(const MotionIn<Real>& motion, Memory<Real> old) const {
     return 2.0 / 3.0 * motion.overlap * tangent(motion, old);
   }
-  double tangent(const ContactMotion& motion, Memory /*old*/) const { return 2 * young_ * root(motion); }
+  template <class Real>
+  Real tangent(const MotionIn<Real>& motion, Memory<Real> /*old*/) const {
+    return 2 * young_ * root(motion);
+  }
   static constexpr bool shear_follows_overlap = true;
-  ShearSprings shear(const ContactMotion& motion, Memory old) const {
-    ShearSprings springs{.stiffness = 8 * shear_ * root(motion)};
+  template <class Real>
+  ShearSprings<Real> shear(const MotionIn<Real>& motion, Memory<Real> old) const {
+    using std::sqrt;
+    ShearSprings<Real> springs{.stiffness = 8 * shear_ * root(motion)};
     springs.stiffness_slope = springs.stiffness / (2 * motion.overlap);
-    if (motion.overlap < old.overlap) {
-      springs.kept = std::sqrt(motion.overlap / old.overlap);
-      springs.kept_slope = springs.kept / (2 * motion.overlap);
-    }
+    const MaskOf<Real> unloads = motion.overlap < old.overlap;
+    const Real kept = sqrt(motion.overlap / old.overlap);
+    springs.kept = select(unloads, kept, Real(1));
+    // At the committed overlap the slope has a kink, and rounding must not decide on which side of it one is.
+    springs.kept_slope = select(old.overlap - motion.overlap > overlap_rounding * motion.reduced_radius,
+                                kept / (2 * motion.overlap), Real(0));
     return springs;
   }
   /// k_s at the overlap of the committed state.
-  double old_shear_stiffness(const ContactMotion& motion, Memory old) const {
+  double old_shear_stiffness(const ContactMotion& motion, Memory<double> old) const {
     return 8 * shear_ * std::sqrt(motion.reduced_radius * old.overlap);
   }
-  ContactStiffness stiffness(const ContactMotion& motion, Memory old) const {
+  template <class Real>
+  StiffnessIn<Real> stiffness(const MotionIn<Real>& motion, Memory<Real> old) const {
     return {.normal = tangent(motion, old), .shear = 8 * shear_ * root(motion)};
   }
-  double energy(const ContactMotion& motion, Memory old) const {
+  double energy(const ContactMotion& motion, Memory<double> old) const {
     return 0.4 * motion.overlap * force(motion, old);
   }
-  Memory remembered(const ContactMotion& motion, Memory /*old*/) const { return {motion.overlap}; }
+  template <class Real>
+  Memory<Real> remembered(const MotionIn<Real>& motion, Memory<Real> /*old*/) const {
+    return {motion.overlap};
+  }
 
   /// β of the dashpot along n after which an impact leaves the part e of its velocity, where the dashpot may
   /// pull: with c = 2β√(m k_n), e = exp(-πb/√(1 - b²)), b = β√(6/5) (Tsuji et al., Powder Technol. 71:239,
@@ -132,8 +145,10 @@ class HertzSprings {
   }
 
  private:
-  static double root(const ContactMotion& motion) {
-    return std::sqrt(motion.reduced_radius * motion.overlap);
+  template <class Real>
+  static Real root(const MotionIn<Real>& motion) {
+    using std::sqrt;
+    return sqrt(motion.reduced_radius * motion.overlap);
   }
 
   double young_;  // E*, Pa

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "eigengrain/base/pack.hpp"
 #include "eigengrain/contact/laws/frictional.hpp"
 
-#include <algorithm>
 #include <array>
 #include <span>
 #include <string_view>
@@ -27,10 +27,11 @@ class HystereticSprings {
     double friction = 0;     ///< μ
     ShearOptions shear{};
   };
+  template <class Real>
   struct Memory {
-    double largest = 0;  ///< U_m at the committed state, m
-    static constexpr std::array<StateField, 1> fields{{{.name = "largest_overlap", .unit = "m"}}};
+    Real largest = 0;  ///< U_m at the committed state, m
   };
+  static constexpr std::array<StateField, 1> memory_fields{{{.name = "largest_overlap", .unit = "m"}}};
 
   explicit HystereticSprings(const Params& params)
       : loading_(params.kn),
@@ -40,30 +41,37 @@ class HystereticSprings {
   static constexpr bool tension() { return false; }
   bool has_shear() const { return ks_ > 0; }
 
-  double force(const ContactMotion& motion, Memory old) const {
-    if (motion.overlap >= old.largest) return loading_ * motion.overlap;
-    return std::max(0.0, loading_ * old.largest - unloading_ * (old.largest - motion.overlap));
+  template <class Real>
+  Real force(const MotionIn<Real>& motion, Memory<Real> old) const {
+    const Real unloading = loading_ * old.largest - unloading_ * (old.largest - motion.overlap);
+    return select(motion.overlap >= old.largest, loading_ * motion.overlap,
+                  select(unloading > 0.0, unloading, Real(0)));
   }
-  double tangent(const ContactMotion& motion, Memory old) const {
-    if (motion.overlap >= old.largest) return loading_;
+  double tangent(const ContactMotion& motion, Memory<double> old) const {
+    if (!(old.largest - motion.overlap > overlap_rounding * motion.reduced_radius)) return loading_;
     return force(motion, old) > 0 ? unloading_ : 0.0;
   }
   static constexpr bool shear_follows_overlap = false;
-  ShearSprings shear(const ContactMotion& /*motion*/, Memory /*old*/) const { return {.stiffness = ks_}; }
-  double old_shear_stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const { return ks_; }
-  ContactStiffness stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const {
+  template <class Real>
+  ShearSprings<Real> shear(const MotionIn<Real>& /*motion*/, Memory<Real> /*old*/) const {
+    return {.stiffness = ks_};
+  }
+  double old_shear_stiffness(const ContactMotion& /*motion*/, Memory<double> /*old*/) const { return ks_; }
+  template <class Real>
+  StiffnessIn<Real> stiffness(const MotionIn<Real>& /*motion*/, Memory<Real> /*old*/) const {
     return {.normal = unloading_, .shear = ks_};
   }
-  double energy(const ContactMotion& motion, Memory old) const {
+  double energy(const ContactMotion& motion, Memory<double> old) const {
     const double f = force(motion, old);
     return 0.5 * f * f / unloading_;
   }
   /// Of the work of loading ½ k_1 U_m² the part that is not stored, ½ (k_1 U_m)²/k_2.
-  double lost(Memory memory) const {
+  double lost(Memory<double> memory) const {
     return 0.5 * loading_ * (1 - loading_ / unloading_) * memory.largest * memory.largest;
   }
-  Memory remembered(const ContactMotion& motion, Memory old) const {
-    return {std::max(motion.overlap, old.largest)};
+  template <class Real>
+  Memory<Real> remembered(const MotionIn<Real>& motion, Memory<Real> old) const {
+    return {select(motion.overlap > old.largest, motion.overlap, old.largest)};
   }
 
   static constexpr std::string_view name = "hysteretic";

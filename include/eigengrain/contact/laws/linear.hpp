@@ -35,9 +35,9 @@ class LinearSprings {
     bool tension = false;
     ShearOptions shear{};
   };
-  struct Memory {
-    static constexpr std::array<StateField, 0> fields{};
-  };
+  template <class Real>
+  struct Memory {};
+  static constexpr std::array<StateField, 0> memory_fields{};
 
   explicit LinearSprings(const Params& params)
       : kn_(params.kn),
@@ -47,18 +47,28 @@ class LinearSprings {
   bool tension() const { return tension_; }
   bool has_shear() const { return ks_ > 0; }
 
-  double force(const ContactMotion& motion, Memory /*old*/) const { return kn_ * motion.overlap; }
-  double tangent(const ContactMotion& /*motion*/, Memory /*old*/) const { return kn_; }
+  template <class Real>
+  Real force(const MotionIn<Real>& motion, Memory<Real> /*old*/) const {
+    return kn_ * motion.overlap;
+  }
+  double tangent(const ContactMotion& /*motion*/, Memory<double> /*old*/) const { return kn_; }
   static constexpr bool shear_follows_overlap = false;
-  ShearSprings shear(const ContactMotion& /*motion*/, Memory /*old*/) const { return {.stiffness = ks_}; }
-  double old_shear_stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const { return ks_; }
-  ContactStiffness stiffness(const ContactMotion& /*motion*/, Memory /*old*/) const {
+  template <class Real>
+  ShearSprings<Real> shear(const MotionIn<Real>& /*motion*/, Memory<Real> /*old*/) const {
+    return {.stiffness = ks_};
+  }
+  double old_shear_stiffness(const ContactMotion& /*motion*/, Memory<double> /*old*/) const { return ks_; }
+  template <class Real>
+  StiffnessIn<Real> stiffness(const MotionIn<Real>& /*motion*/, Memory<Real> /*old*/) const {
     return {.normal = kn_, .shear = ks_};
   }
-  double energy(const ContactMotion& motion, Memory /*old*/) const {
+  double energy(const ContactMotion& motion, Memory<double> /*old*/) const {
     return 0.5 * kn_ * motion.overlap * motion.overlap;
   }
-  Memory remembered(const ContactMotion& /*motion*/, Memory /*old*/) const { return {}; }
+  template <class Real>
+  Memory<Real> remembered(const MotionIn<Real>& /*motion*/, Memory<Real> /*old*/) const {
+    return {};
+  }
 
   /// β of the dashpot along n after which an impact leaves the part e of its velocity, where the dashpot may
   /// pull: e = exp(-πβ/√(1 - β²)).

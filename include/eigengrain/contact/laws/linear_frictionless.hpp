@@ -11,7 +11,9 @@ namespace eigengrain::contact {
 /// 0 (PFC3D eq. 1.10). No history, so its contacts store none, and no rotations.
 class LinearFrictionless {
  public:
-  struct State {};
+  template <class Real>
+  struct StateIn {};
+  using State = StateIn<double>;
   static constexpr std::array<StateField, 0> state_fields{};
 
   static constexpr auto name = Linear::name;
@@ -32,10 +34,15 @@ class LinearFrictionless {
   static constexpr bool mid_step() { return false; }
   State formed(const Vec3& /*normal*/) const { return {}; }
 
-  bool acts(const ContactMotion& motion, const State& /*old*/) const { return motion.overlap > 0; }
+  template <class Real>
+  MaskOf<Real> acts(const MotionIn<Real>& motion, const StateIn<Real>& /*old*/) const {
+    return motion.overlap > 0.0;
+  }
 
-  ContactForce evaluate(const ContactMotion& motion, const State& old, State& /*next*/) const {
-    if (!acts(motion, old)) return {};
+  template <class Real>
+  ForceIn<Real> evaluate(const MotionIn<Real>& motion, const StateIn<Real>& old,
+                         StateIn<Real>& /*next*/) const {
+    if (none(acts(motion, old))) return {};
     return {.force = kn_ * motion.overlap * motion.normal};
   }
 

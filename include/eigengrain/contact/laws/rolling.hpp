@@ -41,9 +41,11 @@ struct RollingSpring {
 template <class Base>
 class Rolling : public Base {
  public:
-  struct State : Base::State {
-    Vec3 moment = Vec3::Zero();  ///< M, N m, of the first side on the second
+  template <class Real>
+  struct StateIn : Base::template StateIn<Real> {
+    Vec3Of<Real> moment = Vec3Of<Real>::Zero();  ///< M, N m, of the first side on the second
   };
+  using State = StateIn<double>;
   static constexpr auto state_fields =
       joined(Base::state_fields,
              std::array<StateField, 1>{{{.name = "rolling_moment", .unit = "N m", .components = 3}}});
@@ -55,20 +57,27 @@ class Rolling : public Base {
   bool needs_rotation() const { return spring_.kr > 0 || Base::needs_rotation(); }
   State formed(const Vec3& n) const { return {Base::formed(n)}; }
 
-  Response respond(const ContactMotion& motion, const State& old, State& next) const {
-    Response response = Base::respond(motion, old, next);
-    next.moment = trial_moment(motion, old);
-    const double limit = limit_of(motion, response);
-    if (slips(next.moment, limit)) next.moment *= limit / next.moment.norm();
-    if (!Base::acts(motion, old)) next.moment = Vec3::Zero();
+  template <class Real>
+  Response<Real> respond(const MotionIn<Real>& motion, const StateIn<Real>& old, StateIn<Real>& next) const {
+    using std::sqrt;
+    Response<Real> response = Base::template respond<Real>(motion, old, next);
+    next.moment = Vec3Of<Real>::Zero();
+    if (none(Base::template acts<Real>(motion, old))) return response;
+    const Vec3Of<Real> trial = trial_moment(motion, old);
+    const Real limit = limit_of(motion, response);
+    const MaskOf<Real> sliding = slips(trial, limit);
+    next.moment = trial;
+    if (!none(sliding)) next.moment = select<Real>(sliding, limit / sqrt(trial.squaredNorm()) * trial, trial);
     response.force.moment += next.moment;
     return response;
   }
-  ContactForce evaluate(const ContactMotion& motion, const State& old, State& next) const {
+  template <class Real>
+  ForceIn<Real> evaluate(const MotionIn<Real>& motion, const StateIn<Real>& old, StateIn<Real>& next) const {
     return respond(motion, old, next).force;
   }
-  ContactStiffness stiffness(const ContactMotion& motion, const State& old) const {
-    ContactStiffness k = Base::stiffness(motion, old);
+  template <class Real>
+  StiffnessIn<Real> stiffness(const MotionIn<Real>& motion, const StateIn<Real>& old) const {
+    StiffnessIn<Real> k = Base::template stiffness<Real>(motion, old);
     k.twist += spring_.kr;
     k.bending += spring_.kr;
     return k;
@@ -121,15 +130,23 @@ class Rolling : public Base {
 
  private:
   /// M before the slip check. Zero in the step in which the contact forms.
-  Vec3 trial_moment(const ContactMotion& motion, const State& old) const {
-    if (spring_.kr <= 0 || !old.formed()) return Vec3::Zero();
-    return carry_vector(old.moment, old.normal, motion.normal, motion.spin) - spring_.kr * motion.rotation;
+  template <class Real>
+  Vec3Of<Real> trial_moment(const MotionIn<Real>& motion, const StateIn<Real>& old) const {
+    using Vector = Vec3Of<Real>;
+    if (spring_.kr <= 0) return Vector::Zero();
+    return select<Real>(
+        old.formed(),
+        carry_vector<Real>(old.moment, old.normal, motion.normal, motion.spin) - spring_.kr * motion.rotation,
+        Vector::Zero());
   }
-  double limit_of(const ContactMotion& motion, const Response& base) const {
+  template <class Real>
+  Real limit_of(const MotionIn<Real>& motion, const Response<Real>& base) const {
     return spring_.friction * motion.reduced_radius * base.normal_force;
   }
-  bool slips(const Vec3& moment, double limit) const {
-    return !Base::tension() && moment.squaredNorm() > limit * limit;
+  template <class Real>
+  MaskOf<Real> slips(const Vec3Of<Real>& moment, const Real& limit) const {
+    const MaskOf<Real> beyond = moment.squaredNorm() > limit * limit;
+    return Base::tension() ? MaskOf<Real>{} : beyond;
   }
 
   RollingSpring spring_;
