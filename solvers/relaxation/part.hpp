@@ -9,16 +9,17 @@
 namespace eigengrain::relaxation {
 
 /// Bodies that are pushed or turned by more than a force (moments count over the radius), or that fall:
-/// nothing touches them.
+/// nothing touches them. A clump is one body.
 struct Movers {
-  std::vector<std::int32_t> bodies;  ///< in storage order
+  std::vector<std::int32_t> bodies;  ///< rows, of clumps those of their holders, in storage order
+  double moving = 0;                 ///< the same sum of these, N
   double rest = 0;  ///< sum of the pushes on all others, or of their turns if that is more, N
 };
 Movers movers_of(const assembly::State& state, double force);
 
 /// A few moving bodies of a packing and what surrounds them, as a state of its own: the movers and their
 /// neighbours are free, the next ring is held, all others are left out. Where a handful of balls still roll
-/// on a bed at rest, cycles of this part cost next to nothing beside cycles of the whole. Not with clumps.
+/// on a bed at rest, cycles of this part cost next to nothing beside cycles of the whole.
 class Part {
  public:
   /// Lists the contacts of the whole anew. Neighbours are bodies whose surfaces are less than the mean radius
@@ -34,6 +35,7 @@ class Part {
 
  private:
   std::vector<std::int32_t> bodies_;  ///< rows of the whole
+  std::vector<std::int32_t> clumps_;  ///< clumps of the whole
   std::vector<char> free_;            ///< [bodies of the part] not held
   std::vector<Vec3> position_;        ///< [bodies of the part] at first, m
   double room_ = 0;                   ///< m

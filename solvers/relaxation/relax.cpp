@@ -1,18 +1,25 @@
 #include "eigengrain/relaxation/relax.hpp"
 
-#include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
+#include "eigengrain/base/error.hpp"
 #include "eigengrain/base/text.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/cycle.hpp"
 #include "eigengrain/cycle/policy.hpp"
 
+#include "at_rest.hpp"
+#include "fire.hpp"
 #include "newton.hpp"
 #include "part.hpp"
+#include "servo_walls.hpp"
+#include "settling.hpp"
+#include "soundness.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -22,9 +29,10 @@ namespace {
 using assembly::Balance;
 using assembly::State;
 
-constexpr double explicit_damping = 0.7;
-constexpr double first_hand_over = 1e-5;  // ratio at which Newton is tried first
-constexpr double explicit_safety = 0.95;  // of a proven bound
+/// Ratio below which Newton is tried where contacts have settled, and where it is tried anyway.
+constexpr double first_hand_over = 1e-3;
+constexpr double sure_hand_over = 1e-5;
+constexpr double explicit_safety = 0.95;  // of a proven step
 constexpr std::int64_t steps_between_looks = 100;
 constexpr std::int64_t steps_between_reports = 1000;
 /// Reach of Newton's list over the skin of the cycle's.
@@ -33,40 +41,41 @@ constexpr double newton_reach = 4;
 constexpr int most_lists = 20;
 /// Newton is asked for this part of what is wished, so that the commit's rounding does not undo it.
 constexpr double newton_margin = 0.3;
+/// Where Newton's method is at the right place, a few iterations bring it to less than this.
+constexpr double newton_progress = 0.2;
 /// Over the rounding floor; less cannot be asked of positions in doubles.
 constexpr double floor_margin = 1.5;
 
 /// What the commit of a step may add to the least ratio.
 constexpr double rounding_margin = 2;
 
-/// Largest over mean ratio where bodies still fall or roll: there Newton is asked in vain.
-constexpr double settled_max = 100;
 /// Over the mean ratio, from where on a body counts as moving while others rest, and how many of all may do
 /// so for them to be cycled by themselves.
 constexpr double moving = 10;
-constexpr double few = 0.005;
+constexpr double few = 0.01;
+/// Ratios of the others from where on it pays to let them wait; above the last one only where the few are
+/// what is left to settle for the most part.
+constexpr std::array quiet_levels{1e-3, 1e-4, 1e-5};
 constexpr std::int64_t most_part_steps = 200000;  // at a time, before the whole is looked at
 
-bool at_rest_within(const Balance& balance, double ratio) {
-  return balance.unsupported == 0 && std::max(balance.mean, balance.moment_mean) <= ratio;
-}
-
-bool settled_within(const Balance& balance, double ratio) {
-  return at_rest_within(balance, ratio) && std::max(balance.max, balance.moment_max) <= settled_max * ratio;
-}
-
-/// Everything stands still at a moment of its own, and dashpots do nothing.
-void halt(State& state) {
-  for (Vec3& v : state.model.bodies.velocity) v.setZero();
-  for (Vec3& w : state.model.bodies.spin) w.setZero();
-  model::Clumps& clumps = state.model.bodies.clumps;
-  for (Vec3& v : clumps.velocity) v.setZero();
-  for (Vec3& w : clumps.spin) w.setZero();
-  for (Vec3& l : clumps.angular_momentum) l.setZero();
-  state.model.cell.rate.setZero();  // bodies have nothing of its flow any more
-  state.dt = 0;
-  assembly::forget_step(state);
-  assembly::renew_forces(state);
+/// Cycles by a method, of which the settings of the state know from now on.
+cycle::Cycle begin_cycle(State& state, Method method) {
+  model::Scene& settings = state.settings;
+  settings.mass_scaling.reset();
+  switch (method) {
+    case Method::explicit_cycle:
+      settings.timestep = {
+          model::TimestepPolicy::estimate, model::default_safety(model::TimestepPolicy::estimate), {}};
+      break;
+    case Method::scaled:
+      settings.timestep = {model::TimestepPolicy::bound, explicit_safety, {}};
+      settings.mass_scaling = {.form = model::MassScaling::Form::differential, .dt = 1};
+      break;
+    default:
+      settings.timestep = {model::TimestepPolicy::tracked, explicit_safety, {}};
+  }
+  const cycle::TimestepPolicy policy = cycle::policy_of(settings);
+  return cycle::Cycle(std::move(state), policy);
 }
 
 class Relaxation {
@@ -74,141 +83,216 @@ class Relaxation {
   Relaxation(State& state, const RelaxOptions& options) : state_(state), options_(options) {}
 
   RelaxResult run() {
-    const Stopwatch watch;
-    const Clock clock(state_);
-    const GivenVelocities given(state_);
-    const double damping = std::exchange(state_.model.local_damping, explicit_damping);
-    // What bodies have of their own to move by counts afterwards again: α, masses that are scaled, ramps of
-    // radii.
-    auto own_damping = std::exchange(state_.model.bodies.damping, {});
-    auto mass_factor = std::exchange(state_.model.bodies.mass_factor, {});
-    auto ramp = std::exchange(state_.model.bodies.ramp, {});
-    // Walls and cell rest while an equilibrium is sought, and move on afterwards.
-    const Mat3 gradient = std::exchange(state_.model.cell.velocity_gradient, Mat3::Zero());
-    auto motions = std::exchange(state_.model.wall_motions, {});
-    auto poses = std::exchange(state_.model.wall_poses, {});
+    require_numbers(state_);
+    require_support(state_);
+    SetAside moving_parts(state_);
     halt(state_);
-    result_.start = result_.end = assembly::balance_of(state_);
-    double hand_over = first_hand_over;
-    bool newton_failed = false;
-    while (!at_rest_within(result_.end, options_.tolerance) && !given_up()) {
-      const double least = std::max(options_.tolerance, floor_margin * result_.end.floor);
-      const double ratio = std::max(hand_over, least);
-      if (newton_failed || !settled_within(result_.end, ratio)) approach(ratio);
-      if (at_rest_within(result_.end, options_.tolerance) || given_up()) break;
-      if (!settled_within(result_.end, ratio)) {
-        settle_movers(ratio);
-        continue;
+    look(state_);
+    result_.start = result_.end;
+    note_moment("start", true);
+    try {
+      go();
+    } catch (...) {
+      if (state_.model.bodies.size() > 0) {  // else no motion could begin, and the state is gone with it
+        halt(state_);
+        moving_parts.give_back(state_);
       }
-      // What is found is all that rounding allows, even if it is not enough; but over meshes a committed
-      // state may touch other triangles than Newton's method knew.
-      if (finish() && at_rest_within(result_.end, rounding_margin * least)) break;
-      newton_failed = true;
-      if (hand_over <= least) break;
-      hand_over /= 10;
+      throw;
     }
     halt(state_);
-    given.restore(state_);
-    clock.restore(state_);
-    state_.model.local_damping = damping;
-    state_.model.bodies.damping = std::move(own_damping);
-    state_.model.bodies.mass_factor = std::move(mass_factor);
-    state_.model.bodies.ramp = std::move(ramp);
-    state_.model.cell.velocity_gradient = gradient;
-    state_.model.wall_motions = std::move(motions);
-    state_.model.wall_poses = std::move(poses);
-    result_.converged = at_rest_within(result_.end, options_.tolerance);
-    result_.seconds = watch.seconds();
+    moving_parts.give_back(state_);
+    result_.converged = done();
+    if (!result_.converged) result_.floating = floating_groups(state_);
+    result_.seconds = watch_.seconds();
     return std::move(result_);
   }
 
  private:
-  struct Clock {
-    explicit Clock(const State& state) : time(state.time), step(state.step) {}
-    void restore(State& state) const {
-      state.time = time;
-      state.step = step;
-    }
-    double time;
-    std::int64_t step;
-  };
+  void go() {
+    if (options_.method == Method::hybrid)
+      hybrid();
+    else if (options_.method == Method::newton)
+      newton_alone();
+    else
+      descend_alone();
+  }
 
-  /// Velocities that fixed components keep: they rest while an equilibrium is sought, and move on afterwards.
-  struct GivenVelocities {
-    explicit GivenVelocities(const State& state)
-        : velocity(state.model.bodies.velocity),
-          spin(state.model.bodies.spin),
-          of_clumps(state.model.bodies.clumps.velocity),
-          clump_spin(state.model.bodies.clumps.spin) {
-      // The flow of the cell comes back with its first step.
-      const assembly::Fluctuation fluctuation(state.model.cell);
-      for (std::size_t i = 0; i < velocity.size(); ++i)
-        velocity[i] = fluctuation.of(velocity[i], state.model.bodies.position[i]);
-      for (std::size_t c = 0; c < of_clumps.size(); ++c)
-        of_clumps[c] = fluctuation.of(of_clumps[c], state.model.bodies.clumps.position[c]);
-    }
-    void restore(State& state) const {
-      model::Bodies& bodies = state.model.bodies;
-      for (std::size_t i = 0; i < velocity.size(); ++i) {
-        const model::FixedComponents fixed = bodies.fixed[i];
-        bodies.velocity[i] = velocity[i] - model::free_part(velocity[i], fixed.translation());
-        if (!spin.empty()) bodies.spin[i] = spin[i] - model::free_part(spin[i], fixed.rotation());
+  bool done() const {
+    return at_rest_within(result_.end, options_.tolerance) && result_.missing_force <= options_.tolerance;
+  }
+  void look(const State& state) {
+    result_.end = assembly::balance_of(state);
+    result_.missing_force = missing_force(state.model);
+  }
+
+  /// The least that may be asked for.
+  double least() const { return std::max(options_.tolerance, floor_margin * result_.end.floor); }
+
+  void hybrid() {
+    double hand_over = first_hand_over;
+    bool newton_failed = false;  // the last time: cycles of the whole come first now
+    while (!done() && !given_up()) {
+      const double ratio = std::max(hand_over, least());
+      std::optional<double> few_left;
+      if (newton_failed || !may_hand_over(ratio, {})) few_left = approach(ratio);
+      if (done() || given_up()) break;
+      if (few_left || !settled_within(result_.end, ratio)) {
+        settle_movers(few_left.value_or(quiet_levels.back()));
+        continue;
       }
-      model::Clumps& clumps = bodies.clumps;
-      for (std::int32_t c = 0; c < clumps.size(); ++c) {
-        const auto k = static_cast<std::size_t>(c);
-        const model::FixedComponents fixed = bodies.fixed[static_cast<std::size_t>(clumps.holder(c))];
-        clumps.velocity[k] = of_clumps[k] - model::free_part(of_clumps[k], fixed.translation());
-        if (fixed.rotation() != 7) continue;
-        clumps.spin[k] = clump_spin[k];
-        clumps.angular_momentum[k] = model::angular_momentum(clumps, c, clump_spin[k]);
+      // What is found is all that rounding allows, even if it is not enough; but over meshes a committed
+      // state may touch other triangles than Newton's method knew.
+      if (finish() && at_rest_within(result_.end, rounding_margin * least())) break;
+      // What a mover or two have kept it from may go on from here.
+      if (const auto level = few_move(state_); level && !newton_failed) {
+        newton_failed = true;
+        settle_movers(*level);
+        continue;
       }
+      newton_failed = true;
+      if (mean_of(result_.end) <= least()) break;
+      hand_over = std::min(ratio, mean_of(result_.end)) / 10;
     }
-    std::vector<Vec3> velocity;
-    std::vector<Vec3> spin;
-    std::vector<Vec3> of_clumps;
-    std::vector<Vec3> clump_spin;
-  };
+  }
+
+  void descend_alone() {
+    const bool walls_stand = options_.method == Method::fire;
+    do {
+      descend(options_.method, [&](const State&) {
+        return walls_stand ? at_rest_within(result_.end, options_.tolerance) : done();
+      });
+      if (walls_stand && !given_up()) drive_walls();
+    } while (walls_stand && !done() && !given_up());
+  }
+
+  void newton_alone() {
+    double before = 0;
+    do {
+      before = mean_of(result_.end);
+      if (finish()) return;
+    } while (!given_up() && mean_of(result_.end) < 0.5 * before);
+  }
 
   bool given_up() const {
     return interrupted_ || result_.explicit_steps + result_.part_steps >= options_.max_steps;
+  }
+  void ask_for_interrupts() {
+    interrupted_ = interrupted_ || (options_.interrupted && options_.interrupted());
   }
 
   void report(const std::string& stage) const {
     if (options_.report)
       options_.report(fmt::format(
           "{}: {} explicit steps, unbalanced mean {:.2e}, max {:.2e}{}", stage,
-          grouped(result_.explicit_steps), result_.end.mean, result_.end.max,
+          grouped(result_.explicit_steps), mean_of(result_.end),
+          std::max(result_.end.max, result_.end.moment_max),
           result_.end.unsupported > 0 ? fmt::format(", {} unsupported", result_.end.unsupported) : ""));
   }
 
-  cycle::TimestepPolicy policy() const {
-    model::Scene settings = state_.settings;
-    settings.timestep = {model::TimestepPolicy::bound, explicit_safety, {}};
-    settings.mass_scaling.reset();
-    return cycle::policy_of(settings);
+  RelaxStage& stage(std::string_view name) {
+    if (result_.stages.empty() || result_.stages.back().name != name)
+      result_.stages.push_back({.name = name});
+    return result_.stages.back();
   }
 
-  /// Explicit cycles down to the ratio, or until only a few bodies are left above it.
-  void approach(double ratio) {
-    const Stopwatch watch;
-    const cycle::TimestepPolicy chosen = policy();
-    cycle::Cycle cycle(std::move(state_), chosen);
+  /// observed  whether the state is the one that the balance is of
+  void note_moment(std::string_view name, bool observed, const State* at = nullptr) {
+    const Moment moment{.seconds = watch_.seconds(),
+                        .sweeps = sweeps_,
+                        .mean = mean_of(result_.end),
+                        .max = std::max(result_.end.max, result_.end.moment_max),
+                        .stage = name};
+    result_.course.push_back(moment);
+    if (observed && options_.observe) options_.observe(at != nullptr ? *at : state_, moment);
+  }
+
+  /// Whether Newton's method may be tried: soon where contacts have settled since the last look, and in any
+  /// case at a low ratio.
+  bool may_hand_over(double ratio,
+                     const std::optional<std::pair<ContactCounts, ContactCounts>>& looks) const {
+    if (settled_within(result_.end, std::min(ratio, sure_hand_over))) return true;
+    return looks && settled_within(result_.end, ratio) && stays(looks->first, looks->second);
+  }
+
+  /// Steps of a motion until it is over.
+  template <class Motion, class Over>
+  void move_until(Motion& motion, std::string_view name, const Over& over) {
+    RelaxStage& now = stage(name);
+    const double before = watch_.seconds();
+    const double seconds = now.seconds;
     do {
-      cycle.run(steps_between_looks);
+      motion.run(steps_between_looks);
       result_.explicit_steps += steps_between_looks;
-      result_.end = assembly::balance_of(cycle.state());
-      if (result_.explicit_steps % steps_between_reports == 0) report("explicit");
-      interrupted_ = options_.interrupted && options_.interrupted();
-    } while (!settled_within(result_.end, ratio) && !few_move(cycle.state(), ratio) && !given_up());
-    state_ = cycle.release();
-    halt(state_);
-    result_.end = assembly::balance_of(state_);
-    note_method("explicit");
-    result_.explicit_seconds += watch.seconds();
+      now.steps += steps_between_looks;
+      sweeps_ += steps_between_looks;
+      look(motion.state());
+      if (!std::isfinite(mean_of(result_.end)))
+        throw SolverError(
+            fmt::format("the {} method blew up after {} steps: its forces are not numbers any more; take "
+                        "--method hybrid, "
+                        "whose steps are proven",
+                        name, result_.explicit_steps));
+      now.mean = mean_of(result_.end);
+      now.seconds = seconds + watch_.seconds() - before;
+      note_moment(name, true, &motion.state());
+      if (result_.explicit_steps % steps_between_reports == 0) report(std::string(name));
+      ask_for_interrupts();
+    } while (!given_up() && !over(motion.state()));
+    result_.explicit_seconds += watch_.seconds() - before;
   }
 
-  /// The force above which a body counts as moving at this ratio, N.
+  /// The same with the state, which comes back whatever happens: where it blows up, as it was before.
+  template <class Motion, class Over>
+  void move_state(Motion motion, std::string_view name, const State* before, const Over& over) {
+    try {
+      move_until(motion, name, over);
+    } catch (...) {
+      state_ = before != nullptr ? *before : motion.release();
+      throw;
+    }
+    state_ = motion.release();
+  }
+
+  template <class Over>
+  void descend(Method method, const Over& over) {
+    const std::string_view name = name_of(method);
+    if (done() || given_up()) return;
+    if (method == Method::fire) {
+      move_state(Fire(std::move(state_)), name, nullptr, over);
+    } else {
+      const State before = proven(method) ? State{} : state_;
+      move_state(begin_cycle(state_, method), name, proven(method) ? nullptr : &before, over);
+      state_.model.bodies.mass_factor.clear();
+    }
+    halt(state_);
+    look(state_);
+    note_method(name);
+  }
+  /// Whether its steps cannot blow up.
+  static bool proven(Method method) { return method != Method::explicit_cycle; }
+
+  /// Explicit cycles until Newton's method may be tried, or until only a few bodies move: then the ratio that
+  /// the others have.
+  std::optional<double> approach(double ratio) {
+    std::optional<ContactCounts> before;
+    std::optional<double> few_left;
+    descend(Method::tracked, [&](const State& state) {
+      few_left = few_move(state);
+      if (done() || few_left) return true;
+      if (!settled_within(result_.end, ratio)) {
+        before.reset();
+        return false;
+      }
+      const ContactCounts now = count_contacts(state.model);
+      std::optional<std::pair<ContactCounts, ContactCounts>> looks;
+      if (before) looks.emplace(*before, now);
+      before = now;
+      return may_hand_over(ratio, looks);
+    });
+    return few_left;
+  }
+
+  /// The force above which a body counts as moving while others have this ratio, N.
   double moving_force(double ratio) const { return moving * ratio * result_.end.mean_contact_force; }
 
   bool are_few(const Movers& movers) const {
@@ -216,38 +300,45 @@ class Relaxation {
            static_cast<double>(movers.bodies.size()) <= few * static_cast<double>(result_.end.bodies);
   }
 
-  /// Whether a few bodies are all that keeps the state from the ratio. A part (part.hpp) knows no clumps:
-  /// where there are some, the whole is cycled until it has settled.
-  bool few_move(const State& state, double ratio) const {
-    if (!state.model.bodies.clumps.empty()) return false;
-    const Movers movers = movers_of(state, moving_force(ratio));
-    return are_few(movers) &&
-           movers.rest <= ratio * static_cast<double>(result_.end.bodies) * result_.end.mean_contact_force;
+  /// The ratio of all others where a few bodies are what keeps the state from coming to rest.
+  std::optional<double> few_move(const State& state) const {
+    for (const double level : quiet_levels) {
+      const Movers movers = movers_of(state, moving_force(level));
+      const bool quiet =
+          movers.rest <= level * static_cast<double>(result_.end.bodies) * result_.end.mean_contact_force;
+      const bool matter = level == quiet_levels.back() || movers.moving > movers.rest;
+      if (quiet && matter && are_few(movers)) return level;
+    }
+    return std::nullopt;
   }
 
   /// Cycles of the bodies that move, and of them alone, until they rest too.
   void settle_movers(double ratio) {
-    if (!state_.model.bodies.clumps.empty()) return;  // see few_move
     const Stopwatch watch;
+    RelaxStage& now = stage("few");
     const double force = moving_force(ratio);
     const std::int64_t end = result_.part_steps + most_part_steps;
     const auto go_on = [&] { return result_.part_steps < end && !given_up(); };
     for (Movers movers = movers_of(state_, force); are_few(movers) && go_on();
          movers = movers_of(state_, force)) {
       Part part(state_, movers.bodies);
-      cycle::Cycle cycle(std::move(part.state()), policy());
+      cycle::Cycle cycle = begin_cycle(part.state(), Method::tracked);
       do {
         for (int k = 0; k < steps_between_looks && part.has_room(cycle.state()); ++k) {
           cycle.step();
           ++result_.part_steps;
+          ++now.steps;
         }
-        interrupted_ = options_.interrupted && options_.interrupted();
+        ask_for_interrupts();
       } while (!movers_of(cycle.state(), force).bodies.empty() && part.has_room(cycle.state()) && go_on());
       part.put_back(cycle.state(), state_);
     }
     halt(state_);
-    result_.end = assembly::balance_of(state_);
+    look(state_);
     report(fmt::format("{} steps of a few that moved", grouped(result_.part_steps)));
+    now.seconds += watch.seconds();
+    now.mean = mean_of(result_.end);
+    note_moment(now.name, true);
     result_.explicit_seconds += watch.seconds();
   }
 
@@ -260,33 +351,79 @@ class Relaxation {
       NewtonOptions wanted;
       wanted.target = std::max(newton_margin * options_.tolerance, floor_margin * result_.end.floor);
       wanted.reach = reach;
+      wanted.interrupted = options_.interrupted;
+      if (options_.method == Method::hybrid) wanted.progress = newton_progress;
+      const Stopwatch watch;
+      const double until_now = watch_.seconds();
       const NewtonResult found = newton(state_, wanted);
-      ++result_.attempts;
-      result_.newton_iterations += found.iterations;
-      result_.linear_iterations += found.linear_iterations;
-      result_.end = assembly::balance_of(state_);
-      report(
-          fmt::format("newton, {} iterations ({} linear){}", found.iterations, found.linear_iterations,
-                      found.converged ? "" : fmt::format(", ended at {:.1e}: {}", found.ratio, found.why)));
-      if (found.converged) note_method("newton");
-      interrupted_ = options_.interrupted && options_.interrupted();
-      if (found.converged || !found.unfinished || interrupted_) return found.converged;
+      note(found, until_now, watch.seconds());
+      if (interrupted_ || (!found.converged && !found.unfinished)) return false;
+      if (!found.converged) continue;
+      if (result_.missing_force <= options_.tolerance) return true;
+      if (mean_of(result_.end) > rounding_margin * wanted.target) return true;  // see hybrid
+      drive_walls();
     }
     return false;
   }
 
-  void note_method(const std::string& name) {
+  /// Servo walls to where they push as they are asked to.
+  void drive_walls() {
+    if (result_.missing_force <= options_.tolerance || !has_servo_walls(state_.model)) return;
+    const double reach = newton_reach * state_.list.skin;
+    assembly::renew_list(state_, reach);
+    drive_servo_walls(state_, reach, options_.interrupted);
+    look(state_);
+  }
+
+  void note(const NewtonResult& found, double until_now, double seconds) {
+    ++result_.attempts;
+    result_.newton_iterations += found.iterations;
+    result_.linear_iterations += found.linear_iterations;
+    look(state_);
+    result_.linear_failures.insert(result_.linear_failures.end(), found.linear_failures.begin(),
+                                   found.linear_failures.end());
+    if (!found.linear_method.empty()) result_.linear_method = found.linear_method;
+    RelaxStage& now = stage("newton");
+    now.iterations += found.iterations;
+    now.linear_iterations += found.linear_iterations;
+    now.seconds += seconds;
+    now.mean = mean_of(result_.end);
+    for (const NewtonMoment& moment : found.course)
+      result_.course.push_back({.seconds = until_now + moment.seconds,
+                                .sweeps = sweeps_ + moment.sweeps,
+                                .mean = moment.ratio,
+                                .stage = "newton"});
+    if (!found.course.empty()) sweeps_ += found.course.back().sweeps;
+    note_moment("newton", true);
+    report(fmt::format("newton, {} iterations ({} linear{}){}", found.iterations, found.linear_iterations,
+                       found.linear_method.empty() ? "" : ", " + found.linear_method,
+                       found.converged ? "" : fmt::format(", ended at {:.1e}: {}", found.ratio, found.why)));
+    for (const std::string& failure : found.linear_failures)
+      if (options_.report) options_.report(fmt::format("  another linear solver took over from {}", failure));
+    if (found.converged) note_method("newton");
+    ask_for_interrupts();
+  }
+
+  void note_method(std::string_view name) {
     if (result_.method.find(name) == std::string::npos)
-      result_.method += (result_.method.empty() ? "" : "+") + name;
+      result_.method.append(result_.method.empty() ? "" : "+").append(name);
   }
 
   State& state_;
   const RelaxOptions& options_;
   RelaxResult result_;
+  Stopwatch watch_;
+  std::int64_t sweeps_ = 0;
   bool interrupted_ = false;
 };
 
 }  // namespace
+
+std::optional<Method> find_method(std::string_view name) {
+  for (const NamedMethod& known : methods)
+    if (known.name == name) return known.method;
+  return std::nullopt;
+}
 
 RelaxResult relax(State& state, const RelaxOptions& options) {
   state.ledger.reset();  // the way to an equilibrium is not one in time

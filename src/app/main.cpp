@@ -63,6 +63,14 @@ void add_page(CLI::App& verb, Options& options) {
       ->type_name("REPORT.html");
 }
 
+/// What an equilibrium is, and how long to look for it.
+void add_equilibrium(CLI::App& verb, Options& options) {
+  verb.add_option("--tolerance", options.tolerance, "mean unbalanced ratio to reach; default 1e-10")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--max-steps", options.max_steps, "explicit steps to spend; default 1000000")
+      ->check(CLI::PositiveNumber);
+}
+
 /// `compare` and its subjects.
 void add_compare(CLI::App& program, Options& options) {
   CLI::App* compare = program.add_subcommand("compare", "methods beside each other, as a table and a page");
@@ -91,6 +99,14 @@ void add_compare(CLI::App& program, Options& options) {
       ->check(CLI::PositiveNumber)
       ->type_name("SECONDS");
   add_page(*steps, options);
+  CLI::App* relaxing =
+      add_bare_verb(*compare, "relaxation", "ways to an equilibrium: ratio against seconds and work", options,
+                    compare_relaxation);
+  relaxing->add_option("scenes", options.scenes, "scenes, states, and folders of scenes (all *.yaml in them)")
+      ->required()
+      ->type_name("SCENE.yaml|STATE.h5|FOLDER");
+  add_equilibrium(*relaxing, options);
+  add_page(*relaxing, options);
 }
 
 /// What is asked of the elastic stiffness of an assembly.
@@ -168,10 +184,28 @@ int run_program(int argc, char** argv) {
       add_verb(program, "relax", "equilibrium, by explicit cycles and Newton's method", options, relax);
   add_output(*relaxing, options);
   add_petsc(*relaxing, options, "-relax_ksp_type gmres");
-  relaxing->add_option("--tolerance", options.tolerance, "mean unbalanced ratio to reach; default 1e-10")
-      ->check(CLI::PositiveNumber);
-  relaxing->add_option("--max-steps", options.max_steps, "explicit steps to spend; default 1000000")
-      ->check(CLI::PositiveNumber);
+  add_equilibrium(*relaxing, options);
+  relaxing
+      ->add_option("--method", options.method,
+                   "hybrid (the default), or one alone: explicit (0.8 of PFC3D's step), tracked, scaled "
+                   "(masses), fire, newton")
+      ->type_name("NAME");
+  CLI::Option* load =
+      relaxing
+          ->add_option("--load", options.loads,
+                       "relax along a path: KEY=FROM..TO of the scene, displacement.WALL=[x, y, z] or "
+                       "strain=[[..], [..], [..]] of the periodic cell; may be repeated")
+          ->type_name("PATH")
+          ->allow_extra_args(false);
+  relaxing->add_option("--increments", options.increments, "of the path; default 10")
+      ->check(CLI::Range(1, 9999))
+      ->needs(load);
+  relaxing->add_flag("--continue", options.continues, "go on behind the last increment that was saved")
+      ->needs(load);
+  relaxing
+      ->add_option("--against", options.against,
+                   "relax by this method too, e.g. explicit, and report how far the ends are apart")
+      ->type_name("NAME");
   CLI::App* judging =
       add_verb(program, "timestep", "estimated and true critical timestep", options, timestep);
   add_petsc(*judging, options, "-eps_ncv 80");

@@ -4,6 +4,7 @@
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/timestep/truth.hpp"
 
+#include "compare/relaxation_report.hpp"
 #include "compare/steps_report.hpp"
 #include "compare/timesteps_report.hpp"
 #include "input.hpp"
@@ -118,6 +119,14 @@ void compare_steps(const Options& options) {
       StepsReport{
           .name = state.settings.name, .limit = limit.what, .study = timestep::study_steps(state, study)},
       options);
+}
+
+void compare_relaxation(const Options& options) {
+  check_page(options.page);
+  const RelaxationReport report = compare_relaxations(options);
+  publish(report, options);
+  if (std::ranges::all_of(report.scenes, [](const RelaxedScene& scene) { return !scene.skipped.empty(); }))
+    throw InputError("no scene could be relaxed; see above for each");
 }
 
 }  // namespace eigengrain::app

@@ -31,11 +31,16 @@ struct Options {
   std::string output;                  ///< folder of results; empty: see read_input. Of generate: a file
   double tolerance = 1e-10;            ///< of relax: mean unbalanced ratio
   std::int64_t max_steps = 1000000;    ///< of relax: explicit steps
+  std::string method = "hybrid";       ///< of relax: by name
+  std::vector<std::string> loads;      ///< of relax: a loading path; empty: none
+  int increments = 10;                 ///< of relax: of that path
+  bool continues = false;              ///< of relax: behind the last state of that path
+  std::string against;                 ///< of relax: the method to compare the end with; empty: none
   bool tangent = false;                ///< of timestep: what the elastic stiffness leaves out
   bool certify = false;                ///< of timestep: prove the truth at any size
   bool empirical = false;              ///< of timestep: the limit by running, too
   std::string page;                    ///< of compare: file of the report; empty: none
-  std::vector<std::string> scenes;     ///< of compare timesteps: files and folders
+  std::vector<std::string> scenes;     ///< of compare timesteps and relaxation: files and folders
   std::vector<std::int64_t> sizes;     ///< of compare timesteps: numbers of balls to measure costs at
   std::vector<double> fractions;       ///< of compare steps: of the limit; empty: the usual ones
   double time = 0;                     ///< of compare steps, s; 0: that of the scene
@@ -60,5 +65,6 @@ void export_matrices(const Options& options);
 /// `compare` takes a subject: a verb of its own, with a page of its own.
 void compare_timesteps(const Options& options);
 void compare_steps(const Options& options);
+void compare_relaxation(const Options& options);
 
 }  // namespace eigengrain::app
