@@ -124,9 +124,9 @@ py::dict relax(Handle& handle, double tolerance, std::int64_t max_steps, const p
     relaxation::RelaxOptions options;
     options.tolerance = tolerance;
     options.max_steps = max_steps;
-    const auto guarded = [&](const auto& work) {
+    const auto guarded = [&](const auto& call) {
       try {
-        work();
+        call();
       } catch (const py::error_already_set&) {
         if (!interrupt) interrupt = std::current_exception();
       }

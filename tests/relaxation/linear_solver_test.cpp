@@ -74,7 +74,7 @@ class Problem {
       Mat12 k = contact::stiffness_matrix(e);
       if (c % 10 == 0) {
         const Vec3 t = e.normal.cross(random_vector(random)).normalized();
-        const auto b = contact::strain_displacement(e).topRows<3>();
+        const Eigen::Matrix<double, 3, 12> b = contact::strain_displacement(e).topRows<3>();
         k += 0.3 * e.stiffness.normal * b.transpose() * t * e.normal.transpose() * b;
       }
       matrix_.add(e.a, e.b, k);

@@ -151,10 +151,7 @@ double mean_of(const assembly::Balance& balance) {
 
 /// Relaxes and looks at what must be true of it.
 void expect_rest(assembly::State& state) {
-  relaxation::RelaxOptions options;
-  const double floor = assembly::balance_of(state).floor;
-  options.tolerance = std::max(1e-10, 3 * floor);
-  const relaxation::RelaxResult result = relaxation::relax(state, options);
+  const relaxation::RelaxResult result = relaxation::relax(state, {.tolerance = 1e-10});
   const double wished = std::max(1e-10, 3 * result.end.floor);
   EXPECT_LE(mean_of(result.end), wished) << result.explicit_steps << " steps, " << result.part_steps
                                          << " of a few, " << result.newton_iterations << " iterations";
