@@ -100,21 +100,18 @@ class BallSums {
   BallSums(BallContacts<Law>& group, const Work& work) : group_(group), work_(work), law_(group.law) {}
 
   void run() {
-    // What chosen contacts ask for is on its way into the first cache when they are evaluated, and has room
-    // there.
-    constexpr int block = 128;
-    std::array<std::int32_t, block + lanes> chosen;
-    for (std::int64_t first = work_.begin; first < work_.end; first += block) {
-      const std::int64_t end = std::min(first + block, work_.end);
-      int count = 0;
-      for (std::int64_t c = first; c < end; ++c) {
-        chosen[count] = static_cast<std::int32_t>(c);
-        count += may_act(c) ? 1 : 0;
-      }
-      // Lanes beyond the last contact repeat it, and nothing is stored of them.
-      for (int k = 0; k < lanes; ++k) chosen[count + k] = chosen[std::max(count - 1, 0)];
-      for (int k = 0; k < count; k += lanes) advance(&chosen[k], std::min(lanes, count - k));
+    const std::span<const Candidate> all = work_.candidates;
+    const auto count = static_cast<std::int32_t>(all.size());
+    std::int32_t k = 0;
+    for (; k + lanes <= count; k += lanes) {
+      for (int lane = 0; lane < lanes; ++lane) fetch(all[std::min(k + ahead + lane, count - 1)]);
+      advance(&all[k], lanes);
     }
+    if (k == count) return;
+    // Lanes beyond the last contact repeat it, and nothing is stored of them.
+    std::array<Candidate, lanes> last;
+    for (int lane = 0; lane < lanes; ++lane) last[lane] = all[std::min(k + lane, count - 1)];
+    advance(last.data(), count - k);
   }
 
  private:
@@ -124,38 +121,25 @@ class BallSums {
   static constexpr bool moves = numbers > 0;
   static_assert(moves || !contact::asks_rate<Law>);
 
-  const contact::Pair& pair(std::int32_t contact) const {
-    return group_.pairs[static_cast<std::size_t>(contact)];
+  const model::Image& image(const Candidate& candidate) const {
+    return group_.pairs[static_cast<std::size_t>(candidate.contact)].image;
   }
 
-  /// Whether the contact touches, or acted before. To rounding: what the law says decides.
-  bool may_act(std::int64_t c) {
-    constexpr double margin = 1 + 1e-14;
-    const contact::Pair& p = group_.pairs[static_cast<std::size_t>(c)];
-    const BodyPlace& a = work_.places[p.a];
-    const BodyPlace& b = work_.places[p.b];
-    double x = b.x[0] - a.x[0];
-    double y = b.x[1] - a.x[1];
-    double z = b.x[2] - a.x[2];
-    if (work_.cell != nullptr) {
-      const Vec3 shift = work_.cell->shift(p.image);
-      x += shift.x();
-      y += shift.y();
-      z += shift.z();
-    }
-    const double reach = a.radius + b.radius;
-    // Without a branch on what is as good as random.
-    const bool may = (x * x + y * y + z * z <= margin * reach * reach) | (work_.active[c] != 0);
-    const std::int32_t slot = work_.slot[c];
-    if (!may & (slot != own_chunk)) work_.foreign[slot] = {};
+  /// So many contacts later, what they ask for is on its way into the first cache.
+  static constexpr std::int32_t ahead = 32;
+
+  /// Asks for what a contact will need.
+  void fetch(const Candidate& candidate) {
+    __builtin_prefetch(&work_.places[candidate.b]);
     if constexpr (moves) {
-      __builtin_prefetch(&work_.motions[p.b]);
-      __builtin_prefetch(&group_.states[static_cast<std::size_t>(c)], 1);
+      __builtin_prefetch(&work_.motions[candidate.b]);
+      const auto* state = reinterpret_cast<const char*>(&group_.states[candidate.contact]);
+      __builtin_prefetch(state, 1);
+      __builtin_prefetch(state + sizeof(State) - 1, 1);
     }
-    return may;
   }
 
-  void advance(const std::int32_t* chosen, int used) {
+  void advance(const Candidate* chosen, int used) {
     const contact::GeometryOf<Real> geometry = find_geometry(chosen);
     const contact::MotionIn<Real> motion = find_motion(chosen, geometry);
     contact::ForceIn<Real> force;
@@ -163,12 +147,12 @@ class BallSums {
     add(chosen, used, acts, contact::end_forces(geometry, force));
   }
 
-  contact::GeometryOf<Real> find_geometry(const std::int32_t* chosen) {
+  contact::GeometryOf<Real> find_geometry(const Candidate* chosen) {
     Rows rows_a;
     Rows rows_b;
     for (int lane = 0; lane < lanes; ++lane) {
-      rows_a[lane] = work_.places[pair(chosen[lane]).a].x;
-      rows_b[lane] = work_.places[pair(chosen[lane]).b].x;
+      rows_a[lane] = work_.places[chosen[lane].a].x;
+      rows_b[lane] = work_.places[chosen[lane].b].x;
     }
     std::array<Real, 4> a;
     std::array<Real, 4> b;
@@ -177,7 +161,7 @@ class BallSums {
     branch_ = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     if (work_.cell != nullptr)
       for (int lane = 0; lane < lanes; ++lane) {
-        const Vec3 shift = work_.cell->shift(pair(chosen[lane]).image);
+        const Vec3 shift = work_.cell->shift(image(chosen[lane]));
         for (int k = 0; k < 3; ++k) branch_[k].v[lane] += shift[k];
       }
     radius_a_ = a[3];
@@ -185,13 +169,13 @@ class BallSums {
     return contact::balls_apart(branch_, radius_a_, radius_b_, work_.lever_cut);
   }
 
-  contact::MotionIn<Real> find_motion(const std::int32_t* chosen, const contact::GeometryOf<Real>& geometry) {
+  contact::MotionIn<Real> find_motion(const Candidate* chosen, const contact::GeometryOf<Real>& geometry) {
     if constexpr (!moves) return contact::contact_motion<Real>(geometry, {}, {});
     Rows rows_a;
     Rows rows_b;
     for (int lane = 0; lane < lanes; ++lane) {
-      rows_a[lane] = work_.motions[pair(chosen[lane]).a].velocity;
-      rows_b[lane] = work_.motions[pair(chosen[lane]).b].velocity;
+      rows_a[lane] = work_.motions[chosen[lane].a].velocity;
+      rows_b[lane] = work_.motions[chosen[lane].b].velocity;
     }
     std::array<Real, 8> a;
     std::array<Real, 8> b;
@@ -204,8 +188,8 @@ class BallSums {
                                        duration * Vector(b[4], b[5], b[6])};
     if (work_.cell_step != nullptr)
       for (int lane = 0; lane < lanes; ++lane) {
-        const model::Image& image = pair(chosen[lane]).image;
-        const Vec3 step = *work_.cell_step * Vec3(image[0], image[1], image[2]);
+        const model::Image& of_b = image(chosen[lane]);
+        const Vec3 step = *work_.cell_step * Vec3(of_b[0], of_b[1], of_b[2]);
         for (int k = 0; k < 3; ++k) side_b.translation[k].v[lane] += step[k];
       }
     contact::MotionIn<Real> motion =
@@ -224,14 +208,15 @@ class BallSums {
   }
 
   /// Forces after the motion, and states; which of the contacts act.
-  MaskOf<Real> commit(const std::int32_t* chosen, int used, const contact::MotionIn<Real>& motion,
+  MaskOf<Real> commit(const Candidate* chosen, int used, const contact::MotionIn<Real>& motion,
                       contact::ForceIn<Real>& force) {
     using Packed = typename Law::template StateIn<Real>;
     static_assert(std::is_empty_v<Packed> || sizeof(Packed) == numbers * sizeof(Real));
     std::array<double*, lanes> rows{};
     if constexpr (numbers > 0)
       for (int lane = 0; lane < lanes; ++lane)
-        rows[lane] = reinterpret_cast<double*>(&group_.states[static_cast<std::size_t>(chosen[lane])]);
+        rows[lane] =
+            reinterpret_cast<double*>(&group_.states[static_cast<std::size_t>(chosen[lane].contact)]);
     Packed old;
     Packed next;
     if constexpr (numbers > 0)
@@ -245,29 +230,27 @@ class BallSums {
         number[k] = select(acts, number[k], reinterpret_cast<const Real*>(&never)[k]);
       scatter<numbers>(number, rows, used);
     }
-    for (int lane = 0; lane < used; ++lane) work_.active[chosen[lane]] = acts[lane] ? 1 : 0;
     return acts;
   }
 
   /// What does not act exerts nothing, not even where a body is nowhere (not a number).
-  void add(const std::int32_t* chosen, int used, MaskOf<Real> acts, const contact::EndForcesIn<Real>& ends) {
+  void add(const Candidate* chosen, int used, MaskOf<Real> acts, const contact::EndForcesIn<Real>& ends) {
     const Vector nothing = Vector::Zero();
     const std::array<Row, lanes> force = rows_of(select<Real>(acts, ends.force_b, nothing));
     const std::array<Row, lanes> moment_a = rows_of(select<Real>(acts, ends.moment_a, nothing));
     const std::array<Row, lanes> moment_b = rows_of(select<Real>(acts, ends.moment_b, nothing));
     for (int lane = 0; lane < used; ++lane) {
-      const contact::Pair& p = pair(chosen[lane]);
+      const Candidate& p = chosen[lane];
       BodySum& a = work_.sums[p.a - work_.first_body];
       add_to(a.force, -force[lane]);
       if constexpr (turns) add_to(a.moment, moment_a[lane]);
-      const std::int32_t slot = work_.slot[chosen[lane]];
-      if (slot == own_chunk) {
+      if (p.slot == own_chunk) {
         BodySum& b = work_.sums[p.b - work_.first_body];
         add_to(b.force, force[lane]);
         if constexpr (turns) add_to(b.moment, moment_b[lane]);
       } else {
-        store(work_.foreign[slot].force, force[lane]);
-        if constexpr (turns) store(work_.foreign[slot].moment, moment_b[lane]);
+        store(work_.foreign[p.slot].force, force[lane]);
+        if constexpr (turns) store(work_.foreign[p.slot].moment, moment_b[lane]);
       }
     }
   }

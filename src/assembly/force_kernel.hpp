@@ -10,8 +10,8 @@
 /// The inner loop of the explicit cycle: what the contacts of balls exert, several contacts at a time.
 ///
 /// Data flows like this: pack_bodies() writes what contacts read of a body into two small records; a kernel
-/// goes through the contacts of a chunk of bodies, leaves out those that cannot act, evaluates the others
-/// `lanes` at a time, and adds what they exert to one record a body.
+/// goes through those contacts of a chunk of bodies that could act soon, evaluates `lanes` of them at a time,
+/// and adds what they exert to one record a body.
 namespace eigengrain::assembly::kernel {
 
 /// Half a cache line of what every contact asks of a body.
@@ -34,6 +34,14 @@ struct alignas(64) BodySum {
   double moment[4];  ///< about the centre, N m
 };
 
+/// A contact that touches, or could before bodies have moved far.
+struct Candidate {
+  std::int32_t contact;  ///< of the group
+  std::int32_t a;        ///< rows of the bodies
+  std::int32_t b;
+  std::int32_t slot;  ///< into `foreign`, or own_chunk
+};
+
 /// No other chunk: the body is one of those whose sums are at hand.
 inline constexpr std::int32_t own_chunk = -1;
 
@@ -46,14 +54,11 @@ struct Work {
   double duration = 0;                        ///< from velocities to increments, s
   double per_second = 0;                      ///< from increments to velocities, 1/s
   double lever_cut = 0;
-  bool turns = false;      ///< whether moments are wanted
-  std::int64_t begin = 0;  ///< contacts
-  std::int64_t end = 0;
-  std::int32_t first_body = 0;         ///< of the chunk
-  const std::int32_t* slot = nullptr;  ///< [contacts] into `foreign`, or own_chunk
-  std::uint8_t* active = nullptr;      ///< [contacts] whether it acted in the step before
-  BodySum* sums = nullptr;             ///< [bodies of the chunk] added to
-  BodySum* foreign = nullptr;          ///< [slots] what contacts do to bodies of other chunks
+  bool turns = false;  ///< whether moments are wanted
+  std::span<const Candidate> candidates;
+  std::int32_t first_body = 0;  ///< of the chunk
+  BodySum* sums = nullptr;      ///< [bodies of the chunk] added to
+  BodySum* foreign = nullptr;   ///< [slots] what contacts do to bodies of other chunks
 };
 
 template <class Law>

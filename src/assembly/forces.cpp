@@ -12,7 +12,11 @@
 #include "force_kernel.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -67,17 +71,21 @@ inline constexpr bool in_packs = std::is_same_v<typename Group::KinematicsType, 
                                      contact::takes_packs<typename Group::LawType> &&
                                  !contact::BondLaw<typename Group::LawType>;
 
-/// [contacts] whether their state is another than that of surfaces which never touched.
-template <class Group>
-std::vector<std::uint8_t> has_history(const Group& group) {
-  using State = typename Group::State;
-  std::vector<std::uint8_t> result(group.states.size(), 0);
-  if constexpr (!std::is_empty_v<State>) {
-    const State never{};
-    for (std::size_t c = 0; c < result.size(); ++c)
-      result[c] = std::memcmp(&group.states[c], &never, sizeof(State)) != 0 ? 1 : 0;
-  }
-  return result;
+/// Of the mean radius: gap up to which contacts are evaluated with those that touch. A tenth of the usual
+/// skin: then gaps are measured ten times in the life of a list, and a tenth of the pairs that are apart is
+/// evaluated in vain.
+constexpr double margin_of_radius = 0.005;
+
+constexpr std::int64_t chunk_of_packing = 1024;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Whether a state is another than that of surfaces which never touched.
+template <class State>
+bool remembers(const State& state) {
+  if constexpr (std::is_empty_v<State>) return false;
+  const State never{};
+  return std::memcmp(&state, &never, sizeof(State)) != 0;
 }
 
 /// A thread's sums of the chunk that it works on: they stay in the processor's cache from one chunk to the
@@ -148,11 +156,14 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
     if constexpr (contact::BondLaw<typename Group::LawType>)
       plan.broken.resize(static_cast<std::size_t>(chunks));
     if constexpr (in_packs<Group>) {
-      plan.active = has_history(group);
+      plan.candidates.resize(static_cast<std::size_t>(chunks));
       places_.resize(static_cast<std::size_t>(bodies));
       if (!std::is_empty_v<typename Group::State>) motions_.resize(static_cast<std::size_t>(bodies));
     }
   });
+  const std::vector<double>& radius = model.bodies.radius;
+  if (!places_.empty())
+    margin_ = margin_of_radius * std::accumulate(radius.begin(), radius.end(), 0.0) / std::ssize(radius);
 }
 
 ContactForceSum::~ContactForceSum() = default;
@@ -163,21 +174,62 @@ void ContactForceSum::pack_bodies(const Model& model, const Trial& trial) {
   if (places_.empty()) return;
   const bool moves = !motions_.empty();
   const bool spins = !trial.spin.empty();
-  for_each_index(model.bodies.size(), [&](std::int64_t index) {
-    const auto i = static_cast<std::size_t>(index);
-    const Vec3& x = trial.position[i];
-    places_[i] = {{x.x(), x.y(), x.z()}, model.bodies.radius[i]};
-    if (!moves) return;
-    const Vec3& v = trial.velocity[i];
-    const Vec3 w = spins ? trial.spin[i] : Vec3(Vec3::Zero());
-    motions_[i] = {{v.x(), v.y(), v.z()}, model.bodies.mass[i], {w.x(), w.y(), w.z()}, 0};
+  const std::int64_t bodies = model.bodies.size();
+  ways_.resize(static_cast<std::size_t>((bodies + chunk_of_packing - 1) / chunk_of_packing));
+  for_chunks(bodies, chunk_of_packing, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+    double farthest = 0;
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const Vec3& x = trial.position[i];
+      kernel::BodyPlace& place = places_[i];
+      const Vec3 step = x - Eigen::Map<const Vec3>(place.x);
+      const double growth = model.bodies.radius[i] - place.radius;
+      const double squared = step.squaredNorm() + growth * growth;
+      if (!(squared <= farthest)) farthest = std::isnan(squared) ? infinity : squared;
+      place = {{x.x(), x.y(), x.z()}, model.bodies.radius[i]};
+      if (!moves) continue;
+      const Vec3& v = trial.velocity[i];
+      const Vec3 w = spins ? trial.spin[i] : Vec3(Vec3::Zero());
+      motions_[i] = {{v.x(), v.y(), v.z()}, model.bodies.mass[i], {w.x(), w.y(), w.z()}, 0};
+    }
+    ways_[static_cast<std::size_t>(chunk)] = std::sqrt(farthest);
   });
+  // A step and a growth of the radius each bring two bodies nearer; both are at most √2 of the root of
+  // squares.
+  way_ += 2 * std::numbers::sqrt2 * *std::ranges::max_element(ways_);
+  // Also of a cell whose edges move the images.
+  selects_ = !(way_ < margin_) || trial.cell_step != nullptr;
+  if (selects_) way_ = 0;
+}
+
+template <class Group>
+void ContactForceSum::select_candidates(GroupPlan& plan, const Group& group, const Model& model,
+                                        const Chunk& chunk) {
+  const auto at = static_cast<std::size_t>(chunk.index);
+  std::vector<kernel::Candidate>& candidates = plan.candidates[at];
+  candidates.clear();
+  // What is added in a while, and what rounding adds to that.
+  const double reach = (1 + 1e-6) * margin_;
+  for (auto c = static_cast<std::size_t>(plan.starts[at]); c < static_cast<std::size_t>(plan.starts[at + 1]);
+       ++c) {
+    const contact::Pair& pair = group.pairs[c];
+    const kernel::BodyPlace& a = places_[static_cast<std::size_t>(pair.a)];
+    const kernel::BodyPlace& b = places_[static_cast<std::size_t>(pair.b)];
+    const Vec3 branch =
+        Eigen::Map<const Vec3>(b.x) - Eigen::Map<const Vec3>(a.x) + model.cell.shift(pair.image);
+    const double far = a.radius + b.radius + reach;
+    if (branch.squaredNorm() > far * far && !remembers(group.states[c])) {
+      if (plan.slot[c] != kernel::own_chunk) foreign_[static_cast<std::size_t>(plan.slot[c])] = {};
+      continue;
+    }
+    candidates.push_back({static_cast<std::int32_t>(c), pair.a, pair.b, plan.slot[c]});
+  }
 }
 
 template <bool commit, class Group>
 void ContactForceSum::sum_group(GroupPlan& plan, Group& group, const Model& model,
                                 const contact::Placement& placement, const Trial& trial, const Chunk& chunk) {
   if constexpr (commit && in_packs<Group>) {
+    if (selects_) select_candidates(plan, group, model, chunk);
     const model::PeriodicCell& cell = model.cell;
     const bool repeats = cell.periodic[0] || cell.periodic[1] || cell.periodic[2];
     const kernel::Work work{.places = places_.data(),
@@ -188,11 +240,8 @@ void ContactForceSum::sum_group(GroupPlan& plan, Group& group, const Model& mode
                             .per_second = trial.per_second,
                             .lever_cut = placement.lever_cut,
                             .turns = turns_,
-                            .begin = plan.starts[static_cast<std::size_t>(chunk.index)],
-                            .end = plan.starts[static_cast<std::size_t>(chunk.index) + 1],
+                            .candidates = plan.candidates[static_cast<std::size_t>(chunk.index)],
                             .first_body = static_cast<std::int32_t>(chunk.first_body),
-                            .slot = plan.slot.data(),
-                            .active = plan.active.data(),
                             .sums = chunk.sums,
                             .foreign = foreign_.data()};
     std::get<kernel::Advance<typename Group::LawType>>(kernel::best_force_kernel())(group, work);
@@ -291,6 +340,7 @@ void ContactForceSum::add_foreign(BodyForces& sum) const {
 }
 
 void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForces& sum) {
+  way_ = infinity;  // it writes what candidates alone write in advance()
   sum_groups<false>(model, trial, sum);
 }
 

@@ -6,6 +6,7 @@
 #include "eigengrain/contact/dissipation.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -84,6 +85,7 @@ namespace kernel {
 struct BodyPlace;
 struct BodyMotion;
 struct BodySum;
+struct Candidate;
 }  // namespace kernel
 
 /// The sum of contact forces on every body, for one contact graph: the work of the explicit cycle and of a
@@ -117,7 +119,8 @@ class ContactForceSum {
   struct GroupPlan {
     std::vector<std::int64_t> starts;  ///< [chunks + 1]
     std::vector<std::int32_t> slot;    ///< [contacts] into foreign_, or own_chunk; empty for walls
-    std::vector<std::uint8_t> active;  ///< [contacts] whether it may act though apart; empty for scalar loops
+    /// [chunks] those that a kernel evaluates, as of the last selection; empty for scalar loops
+    std::vector<std::vector<kernel::Candidate>> candidates;
     std::vector<std::vector<BondBreak>> broken;  ///< [chunks] in the last advance; empty where nothing breaks
   };
   /// The bodies whose sums are at hand.
@@ -136,6 +139,8 @@ class ContactForceSum {
   void sum_one_by_one(GroupPlan& plan, Group& group, const model::Bodies& bodies,
                       const contact::Placement& placement, const Trial& trial, const Chunk& chunk);
   void pack_bodies(const Model& model, const Trial& trial);
+  template <class Group>
+  void select_candidates(GroupPlan& plan, const Group& group, const Model& model, const Chunk& chunk);
   void add_foreign(BodyForces& sum) const;
   /// Decides which triangles of surfaces are contacts.
   void follow_facets(Model& model, const contact::Placement& placement) const;
@@ -147,6 +152,11 @@ class ContactForceSum {
   std::vector<kernel::BodySum> foreign_;      ///< [slots]
   std::vector<kernel::BodyPlace> places_;     ///< [bodies] or empty: no kernel asks
   std::vector<kernel::BodyMotion> motions_;   ///< the same
+  std::vector<double> ways_;                  ///< [chunks] of pack_bodies
+  double margin_ = 0;                         ///< gap up to which contacts are candidates, m
+  double way_ =
+      std::numeric_limits<double>::infinity();  ///< by which two may be nearer than at the last selection, m
+  bool selects_ = true;                         ///< in this call
   std::vector<BondBreak> broken_;
 };
 
