@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Speed and memory of Eigengrain's explicit cycle beside LAMMPS and YADE, on one scene and in one run.
+"""Speed and memory of Eigengrain's explicit cycle beside LAMMPS, LIGGGHTS and YADE, on one scene and in one run.
 
-    run.py [--sizes 1k,10k,100k] [--cores 1,2] [--repeat 3] [--program PATH] [--out FILE.md]
+    run.py [--sizes 1k,10k,100k] [--cores 1,2] [--repeat 3] [--program PATH] [--lammps PATH] [--out FILE.md]
     run.py --check       only whether the codes agree on the forces; exit 77 if there is no other code
 
 Runs the codes by turns, so that what else the machine does falls on all of them. See README.md.
@@ -67,7 +67,7 @@ def execute(command, scene, name):
     """
     path = scene.folder / f"{name}.log"
     environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-    if name == "lammps":
+    if name in ("lammps", "liggghts"):
         environment["OMP_NUM_THREADS"] = "1"
     with open(path, "w") as log:
         process = subprocess.Popen(command, cwd=scene.folder, env=environment, stdin=subprocess.DEVNULL, stdout=log,
@@ -109,18 +109,20 @@ def eigengrain(program, scene, cores):
     return Result(speed, abs(floor) / scene.weight, peak, f"Eigengrain {figures.get('version', '')}".strip())
 
 
-def lammps(skin, scene, cores):
-    command = ["lmp", "-in", str(HERE / "lammps.in"), "-log", "none"]
+def lammps(program, script, skin, scene, cores):
+    """LAMMPS, or LIGGGHTS, which comes from it."""
+    command = [program, "-in", str(HERE / script), "-log", "none"]
     variables = {"data": f"{scene.size}.data", "wx": scene.box[0], "wy": scene.box[1], "skin": skin,
                  "steps": scene.steps}
     for name, value in variables.items():
         command += ["-var", name, str(value)]
     if cores > 1:
         command = ["mpirun", "--bind-to", "none", "--oversubscribe", "-np", str(cores)] + command
-    output, peak = execute(command, scene, "lammps")
+    output, peak = execute(command, scene, script.removesuffix(".in"))
     seconds = float(found(r"Loop time of (\S+)", output, command))
     floor = float(found(r"floor over weight (\S+)", output, command))
-    return Result(scene.balls * scene.steps / seconds, floor, peak, found(r"(LAMMPS \(.*?\))", output, command))
+    version = found(r"(LAMMPS \(.*?\)|LIGGGHTS-PUBLIC [^,]*)", output, command)
+    return Result(scene.balls * scene.steps / seconds, floor, peak, version)
 
 
 def yade(scene, cores):
@@ -147,16 +149,18 @@ def make_scene(folder, size, steps):
 class Comparison:
     """The codes that are there, and what went wrong with them."""
 
-    def __init__(self, program, folder):
+    def __init__(self, program, folder, lammps_program="lmp"):
         self.folder = folder
         self.errors = []
         self.versions = {}
         self.codes = {"Eigengrain": partial(eigengrain, program)}
-        if shutil.which("lmp"):
-            self.codes["LAMMPS, skin 1 mm (default)"] = partial(lammps, "1e-3")
-            self.codes["LAMMPS, skin 0.2 mm"] = partial(lammps, "2e-4")
-        else:
-            say("skipped: LAMMPS, no program `lmp` (Debian package lammps)")
+        for name, program in (("LAMMPS", lammps_program), ("LIGGGHTS", "liggghts")):
+            if not shutil.which(program):
+                say(f"skipped: {name}, no program `{program}` (Debian package {name.lower()})")
+                continue
+            own = partial(lammps, program, f"{name.lower()}.in")
+            self.codes[f"{name}, skin 1 mm"] = partial(own, "1e-3")
+            self.codes[f"{name}, skin 0.2 mm"] = partial(own, "2e-4")
         if shutil.which("yade"):
             self.codes["YADE"] = yade
         else:
@@ -165,9 +169,9 @@ class Comparison:
     def turns(self, scene, cores, repeat):
         """{code: results, one a round} of the codes that never failed."""
         results = {name: [] for name in self.codes}
-        if cores > 1 and shutil.which("lmp") and not shutil.which("mpirun"):
-            say("skipped: LAMMPS on several cores, no program `mpirun`")
-            results = {name: [] for name in results if not name.startswith("LAMMPS")}
+        if cores > 1 and not shutil.which("mpirun"):
+            say("skipped: LAMMPS and LIGGGHTS on several cores, no program `mpirun`")
+            results = {name: [] for name in results if name in ("Eigengrain", "YADE")}
         for _ in range(repeat):
             for name in list(results):
                 try:
@@ -266,6 +270,7 @@ def main():
     parser.add_argument("--cores", default="1,2")
     parser.add_argument("--repeat", type=int, default=3)
     parser.add_argument("--program", default=str(TREE / "build/release/bin/eigengrain"))
+    parser.add_argument("--lammps", default="lmp", help="another LAMMPS, e.g. one built for this processor")
     parser.add_argument("--out", help="the report; default: stdout")
     parser.add_argument("--work", type=Path, default=TREE / "build/peers", help="folder of scenes and logs")
     parser.add_argument("--check", action="store_true", help="only whether the codes agree")
@@ -277,7 +282,7 @@ def main():
     program = shutil.which(arguments.program)
     if not program:
         sys.exit(f"no program {arguments.program}: build the preset release, or say --program PATH")
-    comparison = Comparison(os.path.abspath(program), arguments.work.resolve())
+    comparison = Comparison(os.path.abspath(program), arguments.work.resolve(), arguments.lammps)
     if arguments.check:
         if len(comparison.codes) == 1:
             return 77
