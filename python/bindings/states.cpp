@@ -6,6 +6,7 @@
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/base/timer.hpp"
 #include "eigengrain/cycle/cycle.hpp"
+#include "eigengrain/cycle/goal.hpp"
 #include "eigengrain/cycle/policy.hpp"
 #include "eigengrain/cycle/watch.hpp"
 #include "eigengrain/io/scene_reader.hpp"
@@ -26,6 +27,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace eigengrain::python {
@@ -57,50 +59,137 @@ Handle read(const std::string& file, const std::vector<std::string>& overrides) 
   return Handle(std::move(state));
 }
 
-/// Steps, with looks for a blow-up and for interrupts; what was reached takes the place of the state even
-/// where the user ends it. report(step, time) is called now and then; it may be None.
-void run(Handle& handle, std::int64_t steps, double until, const py::object& report) {
-  const Snapshot start = handle.state();
-  std::exception_ptr interrupt;
-  std::optional<State> reached;
-  {
-    const py::gil_scoped_release open;
-    State copy = *start;
-    const cycle::TimestepPolicy policy = cycle::policy_of(copy.settings);
-    cycle::Cycle cycle(std::move(copy), policy);
-    cycle::Watch watch(cycle.state());
-    const auto look = [&] {
-      if (const auto trouble = watch.look(cycle.state())) {
-        std::string names;
-        for (const std::int64_t body : trouble->bodies)
-          names += (names.empty() ? "" : ", ") + std::to_string(body);
-        throw SolverError("the run blew up before step " + std::to_string(cycle.state().step) + ": " +
-                          trouble->what + " (balls " + names +
-                          "); the state is still that of the start of the run");
-      }
-    };
-    Stopwatch since;
-    double last = 0;
-    try {
-      for (std::int64_t k = 0; k < steps && cycle.state().time < until; ++k) {
-        cycle.step();
-        if (cycle.state().step % steps_between_looks == 0) look();
-        if (since.seconds() - last < seconds_between_interrupts) continue;
-        last = since.seconds();
-        look_for_interrupt();
-        if (!report.is_none()) {
-          const py::gil_scoped_acquire gil;
-          report(cycle.state().step, cycle.state().time);
+/// The explicit cycle of a state that a script holds.
+class ScriptRun {
+ public:
+  /// looks   called every `every` steps with what was reached in the state's place, and at the end; true ends
+  ///         the run. May be None.
+  /// report  report(step, time) is called now and then; may be None.
+  ScriptRun(Handle& handle, const std::optional<model::RunChoice>& run, std::int64_t every, py::object looks,
+            py::object report)
+      : handle_(handle),
+        goal_(run ? cycle::Goal(*run, *handle.state()) : cycle::Goal(*handle.state())),
+        every_(every),
+        looks_(std::move(looks)),
+        report_(std::move(report)) {}
+
+  /// What was reached takes the place of the state even where the user ends it.
+  void go() {
+    std::exception_ptr interrupt;
+    {
+      const py::gil_scoped_release open;
+      begin(*handle_.state());
+      const std::int64_t first = state().step;
+      bool over = false;
+      try {
+        while (!over && !goal_.reached(state())) {
+          step();
+          if (state().step % steps_between_looks == 0) look();
+          if ((state().step - first) % every_ == 0) over = attend();
+          give_way();
         }
+        look();
+        if (!over && (state().step - first) % every_ != 0) attend();
+      } catch (const py::error_already_set&) {
+        interrupt = std::current_exception();
       }
-      look();
-    } catch (const py::error_already_set&) {
-      interrupt = std::current_exception();
     }
-    reached.emplace(cycle.release());
+    handle_.replace(cycle_->release());
+    if (interrupt) std::rethrow_exception(interrupt);
   }
-  handle.replace(std::move(*reached));
-  if (interrupt) std::rethrow_exception(interrupt);
+
+ private:
+  const State& state() const { return cycle_->state(); }
+
+  void begin(State state) {
+    kept_ = handle_.state();
+    const cycle::TimestepPolicy policy = cycle::policy_of(state.settings);
+    cycle_.emplace(std::move(state), policy);
+    watch_.emplace(cycle_->state());
+  }
+  /// A state that is lost makes other mistakes than its own; the watch knows better.
+  void step() {
+    try {
+      cycle_->step();
+    } catch (const std::exception&) {
+      look();
+      throw;
+    }
+  }
+  void look() {
+    const auto trouble = watch_->look(state());
+    if (!trouble) return;
+    std::string names;
+    for (const std::int64_t body : trouble->bodies)
+      names += (names.empty() ? "" : ", ") + std::to_string(body);
+    throw SolverError("the run blew up before step " + std::to_string(state().step) + ": " + trouble->what +
+                      " (balls " + names + "); the state is still that of step " +
+                      std::to_string(kept_->step));
+  }
+  /// Shows what was reached; whether the run is over.
+  bool attend() {
+    if (goal_.has_condition()) goal_.look(state());
+    if (looks_.is_none()) return false;
+    const py::gil_scoped_acquire gil;
+    handle_.replace(State(state()));
+    kept_ = handle_.state();
+    const auto adopt = [&] {  // what the script has made of it
+      if (handle_.state() != kept_) begin(*handle_.state());
+    };
+    try {
+      const bool over = looks_().cast<bool>();
+      adopt();
+      return over;
+    } catch (const py::error_already_set&) {
+      adopt();
+      throw;
+    }
+  }
+  void give_way() {
+    if (since_.seconds() - last_ < seconds_between_interrupts) return;
+    last_ = since_.seconds();
+    look_for_interrupt();
+    if (report_.is_none()) return;
+    const py::gil_scoped_acquire gil;
+    report_(state().step, state().time);
+  }
+
+  Handle& handle_;
+  cycle::Goal goal_;
+  std::int64_t every_;
+  py::object looks_;
+  py::object report_;
+  Snapshot kept_;  ///< what the script sees
+  std::optional<cycle::Cycle> cycle_;
+  std::optional<cycle::Watch> watch_;
+  Stopwatch since_;
+  double last_ = 0;
+};
+
+/// Without an end of its own the run has that of the scene.
+void run(Handle& handle, std::optional<std::int64_t> steps, std::optional<double> time,
+         std::optional<double> unbalanced, std::int64_t every, const py::object& looks,
+         const py::object& report) {
+  std::optional<model::RunChoice> own{{.steps = steps, .time = time, .unbalanced = unbalanced}};
+  if (!own->any()) own.reset();
+  ScriptRun(handle, own, every, looks, report).go();
+}
+
+py::tuple tuple_of(const Vec3& v) {
+  return py::make_tuple(v.x(), v.y(), v.z());
+}
+
+/// Bonds that broke, one row each.
+py::list breaks(const Handle& handle) {
+  using py::literals::operator""_a;
+  py::list rows;
+  for (const assembly::BondBreak& found : handle.state()->breaks)
+    rows.append(py::dict("step"_a = found.step, "time"_a = found.time, "first"_a = found.first,
+                         "second"_a = found.second, "place"_a = tuple_of(found.place),
+                         "normal"_a = tuple_of(found.normal),
+                         "mode"_a = found.mode == contact::BreakMode::tension ? "tension" : "shear",
+                         "contact"_a = found.entry));
+  return rows;
 }
 
 py::dict to_dict(const assembly::Balance& b) {
@@ -283,7 +372,9 @@ void add_states(py::module_& module) {
   state.def("write",
             [](const Handle& self, const std::string& file) { io::write_state(*self.state(), file); });
   state.def("copy", [](const Handle& self) { return Handle(self); });
-  state.def("run", &run, py::arg("steps"), py::arg("until"), py::arg("report"));
+  state.def("run", &run, py::arg("steps"), py::arg("time"), py::arg("unbalanced"), py::arg("every"),
+            py::arg("looks"), py::arg("report"));
+  state.def("breaks", &breaks);
   state.def("relax", &relax, py::arg("tolerance"), py::arg("max_steps"), py::arg("report"));
   state.def("change", &change, py::arg("position"), py::arg("velocity"), py::arg("spin"));
   state.def("measure", &measure_all);
@@ -331,12 +422,6 @@ void add_states(py::module_& module) {
   state.def_property_readonly("notes", [](const Handle& self) { return self.state()->settings.notes; });
   state.def_property_readonly("has_stages",
                               [](const Handle& self) { return !self.state()->settings.stages.empty(); });
-  state.def_property_readonly("goal_steps",
-                              [](const Handle& self) { return self.state()->settings.run.steps; });
-  state.def_property_readonly("goal_time",
-                              [](const Handle& self) { return self.state()->settings.run.time; });
-  state.def_property_readonly("goal_unbalanced",
-                              [](const Handle& self) { return self.state()->settings.run.unbalanced; });
   state.def_property_readonly("cell", [](const Handle& self) {
     const model::PeriodicCell& cell = self.state()->model.cell;
     return py::make_tuple(matrix(cell.edges),

@@ -13,13 +13,14 @@ from __future__ import annotations
 from ._core import __version__, schema_markdown, set_petsc_options, set_threads, threads
 from .errors import InputError, SolverError
 from .load import load
-from .results import Balance, Energies, Estimate, Measure, Relaxation, Timestep, Truth
+from .results import Balance, Break, Energies, Estimate, Measure, Relaxation, Timestep, Truth
 from .spectrum import Density, Moduli, Modes, Rigidity, Springs
 from .state import Bodies, Contacts, State
 from .system import Elements, StiffnessOperator, System
 
 __all__ = [
-    "Balance", "Bodies", "Contacts", "Density", "Elements", "Energies", "Estimate", "InputError", "Measure", "Moduli",
-    "Modes", "Relaxation", "Rigidity", "SolverError", "Springs", "State", "StiffnessOperator", "System", "Timestep", "Truth", "load", "schema_markdown",
-    "set_petsc_options", "set_threads", "threads", "__version__",
+    "Balance", "Bodies", "Break", "Contacts", "Density", "Elements", "Energies", "Estimate", "InputError",
+    "Measure", "Moduli", "Modes", "Relaxation", "Rigidity", "SolverError", "Springs", "State", "StiffnessOperator",
+    "System", "Timestep", "Truth", "load", "schema_markdown", "set_petsc_options", "set_threads", "threads",
+    "__version__",
 ]

@@ -29,7 +29,7 @@ Slice = Optional[tuple[float, float]]
 
 def force_chains(state: State, axes: Axes = None, *, plane: Plane = "xz", slice: Slice = None,
                  balls: bool = True) -> Axes:
-    """Contacts as lines between the centres of their bodies, as thick and as dark as their normal force.
+    """Contacts as lines between the centres of their balls, as thick and as dark as their normal force.
 
     plane: looked at.
     slice: (from, to) across the plane, m: contacts and balls outside are left out; by default a layer of four mean
@@ -40,9 +40,10 @@ def force_chains(state: State, axes: Axes = None, *, plane: Plane = "xz", slice:
     bodies, contacts = state.bodies, state.contacts
     first, second, depth = _plane(plane)
     inside, between = _layer(bodies.position[:, depth], bodies.radius, slice)
-    start = bodies.position[contacts.a]
-    end = start + contacts.branch
-    shown = between((start + contacts.branch / 2)[:, depth]) & (contacts.normal_force > 0)
+    start = bodies.position[contacts.a]  # of the balls themselves, also in clumps
+    length = bodies.radius[contacts.a] + bodies.radius[contacts.b] - contacts.overlap
+    end = np.where((contacts.b >= 0)[:, None], start + length[:, None] * contacts.normal, contacts.point)
+    shown = between(0.5 * (start + end)[:, depth]) & (contacts.normal_force > 0)
     force = contacts.normal_force[shown]
     segments = np.stack([start[shown][:, [first, second]], end[shown][:, [first, second]]], axis=1)
     if balls:
@@ -70,12 +71,11 @@ def mode_shape(state: State, modes: Modes, k: int, axes: Axes = None, *, plane: 
     bodies = state.bodies
     first, second, depth = _plane(plane)
     inside, _ = _layer(bodies.position[:, depth], bodies.radius, slice)
-    u, theta = modes.motion(k)
-    energy = bodies.mass * (u**2).sum(axis=1) + bodies.inertia * (theta**2).sum(axis=1)
-    share = energy / energy.sum()
+    u, _ = modes.motion(k)
+    share = modes.energy(k)
     x, u, share = bodies.position[inside], u[inside][:, [first, second]], share[inside]
     _outlines(axes, x, bodies.radius[inside], first, second)
-    size = np.linalg.norm(u, axis=1).max()
+    size = np.linalg.norm(u, axis=1).max(initial=0.0)
     scale = longest * bodies.radius.mean() / size if size > 0 else 0.0
     order = np.argsort(share)
     arrows = axes.quiver(1e3 * x[order, first], 1e3 * x[order, second], *(1e3 * scale * u[order]).T,

@@ -28,6 +28,20 @@ class Truth:
 
 
 @dataclass(frozen=True)
+class Break:
+    """A bond that broke."""
+
+    step: int
+    time: float  #: s
+    first: int  #: identities of the balls
+    second: int
+    place: tuple[float, float, float]  #: the contact point, m
+    normal: tuple[float, float, float]  #: from the first to the second
+    mode: str  #: "tension" or "shear"
+    contact: int  #: which entry of the scene's `contacts` made it
+
+
+@dataclass(frozen=True)
 class Estimate:
     """An estimate of the undamped critical timestep, before any safety factor."""
 

@@ -41,6 +41,12 @@ class Modes:
         """(u, θ), each (n, 3), of mode k: m and rad along the axes of space."""
         return self._system.to_bodies(self.shapes[k])
 
+    def energy(self, k: int) -> Floats:
+        """(n,) share of each body in the kinetic energy of mode k; of a clump in the row of its holder."""
+        system = self._system
+        of_block = (system.mass * self.shapes[k]**2).reshape(-1, 3).sum(axis=1)
+        return np.bincount(system.body, weights=of_block, minlength=len(system.translation_block)) / of_block.sum()
+
     def save(self, file: str | os.PathLike[str]) -> None:
         """Writes the shapes for ParaView (.vtu)."""
         _core.write_modes(self._system._system, os.fspath(file), self.shapes)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .errors import InputError, SolverError
-from .results import Balance, Energies, Floats, Measure, Relaxation, Timestep
+from .results import Balance, Break, Energies, Floats, Measure, Relaxation, Timestep
 from .spectrum import Moduli, Rigidity
 
 if TYPE_CHECKING:
@@ -290,45 +290,34 @@ class State:
 
         Without an end it is that of the scene (`run`), counted from the scene's start. Other threads run meanwhile.
         Ctrl-C ends it after a whole step with KeyboardInterrupt; the state is then the one reached. Raises SolverError
-        where the run blows up; with a callback or `unbalanced` the state is then that of the last look, else that of
-        the start.
+        where the run blows up; the state is then that of the last call of `callback`, without one that of the start.
         """
         if every < 1:
             raise InputError(f"every: {every} steps; a whole number from 1 up is wanted")
-        if steps is None and time is None and unbalanced is None:
-            if self._handle.has_stages:
-                raise InputError("the scene has stages, which the program runs: eigengrain run; give steps or time here")
-            goal_steps, goal_time = self._handle.goal_steps, self._handle.goal_time
-            unbalanced = self._handle.goal_unbalanced
-            if goal_steps is None and goal_time is None and unbalanced is None:
-                raise InputError("the scene does not say how far to run; give steps=, time= or unbalanced=")
-            steps = None if goal_steps is None else max(0, goal_steps - self.step)
-            time = None if goal_time is None else goal_time - self.time
+        if steps is None and time is None and unbalanced is None and self._handle.has_stages:
+            raise InputError("the scene has stages, which the program runs: eigengrain run; give steps or time here")
         if steps is not None and steps < 0:
             raise InputError(f"steps: {steps}; a number from 0 up is wanted")
         if time is not None and not time >= 0:
             raise InputError(f"time: {time} s; a number from 0 up is wanted")
         if unbalanced is not None and not unbalanced > 0:
             raise InputError(f"unbalanced: {unbalanced}; a ratio above 0 is wanted")
-        first, last_step = self.step, sys.maxsize if steps is None else self.step + steps
-        end = float("inf") if time is None else self.time + time
-        show = _Progress(first, steps, self.time, time) if progress else None
-        looks = callback is not None or unbalanced is not None
+        show = _Progress(self.step, steps, self.time, time) if progress else None
+
+        def looks() -> bool:
+            over = callback(self) if callback is not None else None
+            return isinstance(over, (bool, np.bool_)) and bool(over)
+
         try:
-            while self.step < last_step and self.time < end:
-                part = min(last_step - self.step, every) if looks else last_step - self.step
-                self._handle.run(part, end, show)
-                if callback is not None:
-                    over = callback(self)
-                    if isinstance(over, (bool, np.bool_)) and over:
-                        return
-                if unbalanced is not None:
-                    balance = self.balance
-                    if balance.unsupported == 0 and balance.bodies > 0 and balance.mean < unbalanced:
-                        return
+            self._handle.run(steps, time, unbalanced, every, None if callback is None else looks, show)
         finally:
             if show is not None:
                 show.finish()
+
+    @property
+    def breaks(self) -> list[Break]:
+        """Bonds that broke since the state was made, or since the program that wrote it had noted them."""
+        return [Break(**row) for row in self._handle.breaks()]
 
     def relax(self, tolerance: float = 1e-10, *, max_steps: int = 1000000, progress: bool = False) -> Relaxation:
         """Brings the state to the equilibrium that damped motion leads to, by explicit cycles and Newton's method.

@@ -7,6 +7,7 @@
 #include "eigengrain/timestep/low_modes.hpp"
 
 #include "timestep/krylov.hpp"
+#include "timestep/memory.hpp"
 
 #include <fmt/format.h>
 #include <slepcblaslapack.h>
@@ -92,6 +93,12 @@ Modes all_modes(const LinearSystem& system, bool shapes) {
                     "the density of states (up to {} unknowns all are computed)",
                     free, 8e-9 * static_cast<double>(free) * static_cast<double>(free), dense_unknowns));
   if (free == 0) return {};
+  const double wanted = 8.0 * (shapes ? 3 : 1) * static_cast<double>(free) * static_cast<double>(free);
+  if (const double available = timestep::available_memory(); wanted > available)
+    throw SolverError(
+        fmt::format("all modes of {} unknowns want {:.1f} GB, and {:.1f} GB of memory are free; ask for the "
+                    "lowest and highest ones, or for the density of states",
+                    free, wanted / 1e9, available / 1e9));
   petsc::start();  // holds BLAS to one thread
   Eigen::MatrixXd a = assembly::dense_scaled_stiffness(system);
   Eigen::VectorXd lambda(free);

@@ -189,19 +189,21 @@ std::int64_t count_trivial(const model::Bodies& bodies, const Unknowns& unknowns
       }
     }
   }
-  // Those that are different motions, orthogonal.
+  // Those that are different motions, orthogonal; metres and radians have the same weight.
+  for (Eigen::Index k = 0; k < motions.cols(); ++k)
+    if (const double length = motions.col(k).norm(); length > 0) motions.col(k) /= length;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(motions);
   qr.setThreshold(1e-9);
   const Eigen::MatrixXd basis =
       Eigen::MatrixXd(qr.householderQ() * Eigen::MatrixXd::Identity(unknowns.size(), qr.rank()));
-  Eigen::MatrixXd resisted = Eigen::MatrixXd::Zero(rows, basis.cols());
+  // What springs and fixed components make of them, one below the other.
+  Eigen::MatrixXd resisted = Eigen::MatrixXd::Zero(rows + basis.rows(), basis.cols());
   const std::vector<std::int32_t> free = unknowns.free_components();
-  for (const Entry& e : matrix.entries()) resisted.row(e.row) += e.value * basis.row(free[e.column]);
-  Eigen::MatrixXd held = basis;
-  for (const std::int32_t number : free) held.row(number).setZero();
-  const Eigen::MatrixXd gram = resisted.transpose() * resisted / (norm * norm) + held.transpose() * held;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(gram, Eigen::EigenvaluesOnly);
-  return std::ranges::count_if(of.eigenvalues(), [](double value) { return value < 1e-16; });
+  for (const Entry& e : matrix.entries()) resisted.row(e.row) += e.value / norm * basis.row(free[e.column]);
+  resisted.bottomRows(basis.rows()) = basis;
+  for (const std::int32_t number : free) resisted.row(rows + number).setZero();
+  const Eigen::JacobiSVD<Eigen::MatrixXd> of(resisted);
+  return std::ranges::count_if(of.singularValues(), [](double value) { return value < zero_part; });
 }
 
 }  // namespace

@@ -2,9 +2,9 @@
 
 #include "eigengrain/assembly/bond_break.hpp"
 #include "eigengrain/cycle/cycle.hpp"
+#include "eigengrain/cycle/goal.hpp"
 #include "eigengrain/cycle/watch.hpp"
 
-#include "goal.hpp"
 #include "input.hpp"
 #include "progress.hpp"
 #include "run_outputs.hpp"
@@ -47,7 +47,7 @@ class ExplicitRun {
   const assembly::State& state() const { return cycle_.state(); }
   /// The input for what follows, moved out; the run is over.
   Input take_input();
-  const Goal& goal() const { return goal_; }
+  const cycle::Goal& goal() const { return goal_; }
   const RunOutputs& outputs() const { return outputs_; }
   CycleWork work() const {
     return {state().step - first_step_, seconds_, broken_, choosing_->asked, choosing_->seconds};
@@ -68,7 +68,7 @@ class ExplicitRun {
   void step_to(std::int64_t target);
   void attend();
 
-  Goal goal_;
+  cycle::Goal goal_;
   RunOutputs outputs_;
   std::shared_ptr<Choosing> choosing_ = std::make_shared<Choosing>();
   cycle::Cycle cycle_;

@@ -127,7 +127,7 @@ void StagedRun::run() {
   run.go();
   const CycleWork work = run.work();
   work_ += work;
-  const Goal goal = run.goal();
+  const cycle::Goal goal = run.goal();
   input_ = run.take_input();
   const assembly::Balance balance = assembly::balance_of(state());
   nlohmann::ordered_json entry{{"stage", state().progress.stage},

@@ -14,6 +14,7 @@
 #include <bit>
 #include <cstring>
 #include <iterator>
+#include <limits>
 
 namespace eigengrain::io {
 namespace {
@@ -110,16 +111,20 @@ path write_petsc(const Named& named, const path& folder) {
   std::vector<std::int32_t> length(static_cast<std::size_t>(named.matrix.rows()), 0);
   std::string columns;
   std::string values;
-  std::int32_t count = 0;
+  std::int64_t count = 0;
   for_each_number(named.matrix, [&](std::int64_t row, std::int64_t column, double value) {
     ++length[static_cast<std::size_t>(row)];
     ++count;
     append(columns, static_cast<std::int32_t>(column));
     append(values, value);
   });
+  if (count > std::numeric_limits<std::int32_t>::max())
+    throw InputError(
+        fmt::format("{} has {} numbers, and files of PETSc count up to {}; write h5 or mtx instead",
+                    named.name, count, std::numeric_limits<std::int32_t>::max()));
   std::string bytes;
   for (const std::int64_t head :
-       {std::int64_t{matrix_class}, named.matrix.rows(), named.matrix.column_count(), std::int64_t{count}})
+       {std::int64_t{matrix_class}, named.matrix.rows(), named.matrix.column_count(), count})
     append(bytes, static_cast<std::int32_t>(head));
   for (const std::int32_t numbers : length) append(bytes, numbers);
   return write(folder / (named.name + ".petsc"), bytes + columns + values);

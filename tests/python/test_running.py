@@ -42,6 +42,41 @@ def test_callbacks_do_not_change_the_run():
     np.testing.assert_array_equal(plain.bodies.position, watched.bodies.position)
 
 
+def test_a_numpy_truth_ends_a_run_too():
+    state = eigengrain.load(two_balls())
+    state.run(100, callback=lambda seen: seen.bodies.position[0, 2] < 1, every=10)
+    assert state.step == 10
+
+
+def test_a_run_goes_on_with_what_its_callback_changes():
+    state = eigengrain.load(two_balls())
+    state.run(20, callback=lambda seen: seen.change(velocity=np.full((2, 3), 3.0)) if seen.step == 10 else None,
+              every=10)
+    assert state.step == 20
+    np.testing.assert_allclose(state.bodies.velocity[:, 0], 3.0, rtol=0.1)
+
+
+def test_the_conditions_of_a_scene_end_its_run():
+    state = eigengrain.load(two_balls(run={"steps": 10**6, "until": {"kinetic": 1e-12}}))
+    state.run()
+    assert 0 < state.step < 10**6 and state.energies.kinetic < 1e-12
+
+
+def test_bonds_that_break_are_listed():
+    state = eigengrain.load({
+        "materials": [{"name": "grain", "density": 2500}],
+        "contacts": [{"between": ["grain", "grain"], "law": "linear", "kn": 1e5,
+                      "bond": {"kind": "parallel", "kn": 1e9, "ks": 1e9, "tension": 1e3}}],
+        "balls": [{"position": [0, 0, 0], "radius": 0.005, "material": "grain", "velocity": [-1, 0, 0]},
+                  {"position": [0.01, 0, 0], "radius": 0.005, "material": "grain", "velocity": [1, 0, 0]}]})
+    assert state.breaks == []
+    state.run(200)
+    (broken,) = state.breaks
+    assert broken.mode == "tension" and {broken.first, broken.second} == {1, 2} and 0 < broken.step <= 200
+    np.testing.assert_allclose(broken.place, [0.005, 0, 0], atol=1e-5)
+    np.testing.assert_allclose(np.abs(broken.normal), [1, 0, 0], atol=1e-12)
+
+
 def test_an_exception_of_a_callback_comes_out():
     state = eigengrain.load(two_balls())
 

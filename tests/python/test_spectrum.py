@@ -63,6 +63,7 @@ def test_shares_of_modes_by_hand(small):
         moving = 0.5 * small.bodies.mass * (u**2).sum(axis=1)
         turning = 0.5 * small.bodies.inertia * (theta**2).sum(axis=1)
         e = (moving + turning)[system.translation_block >= 0]
+        np.testing.assert_allclose(modes.energy(k), (moving + turning) / e.sum(), rtol=0, atol=1e-14)
         assert modes.translation[k] == pytest.approx(moving.sum() / e.sum(), rel=1e-12)
         assert modes.participation[k] == pytest.approx(e.sum()**2 / (len(e) * (e**2).sum()), rel=1e-12)
 

@@ -10,8 +10,8 @@
 /// The spectrum of M⁻¹K, and what it says of an assembly.
 namespace eigengrain::spectrum {
 
-/// Systems up to this size have all their modes computed (dense): 8 bytes for the square of it, twice that
-/// with shapes.
+/// Systems up to this size have all their modes computed (dense): 8 bytes for the square of it, three times
+/// that with shapes.
 inline constexpr std::int64_t dense_unknowns = 20000;
 
 /// Eigenpairs of K x = λ M x on the free components.

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace eigengrain::app {
+namespace eigengrain::cycle {
 
 /// When a run is over.
 class Goal {
@@ -14,6 +14,8 @@ class Goal {
   /// Of the state's stage, if it is in one, else of its settings. Throws InputError where these do not say
   /// how far to run, or name a wall that does not exist.
   explicit Goal(const assembly::State& state);
+  /// Of its own, from where the state is.
+  Goal(const model::RunChoice& run, const assembly::State& from);
 
   bool reached(const assembly::State& state) const {
     return (last_step_ && state.step >= *last_step_) || (end_ && state.time >= *end_) || met_;
@@ -31,6 +33,8 @@ class Goal {
   std::string text_of_missed() const;
 
  private:
+  Goal(const model::RunChoice& run, std::int64_t first_step, double start, const assembly::State& state);
+
   model::RunChoice run_;
   std::int64_t first_step_ = 0;
   double start_ = 0;  ///< s
@@ -40,4 +44,4 @@ class Goal {
   bool met_ = false;
 };
 
-}  // namespace eigengrain::app
+}  // namespace eigengrain::cycle

@@ -1,4 +1,4 @@
-#include "goal.hpp"
+#include "eigengrain/cycle/goal.hpp"
 
 #include "eigengrain/assembly/balance.hpp"
 #include "eigengrain/assembly/energies.hpp"
@@ -11,16 +11,32 @@
 #include <algorithm>
 #include <limits>
 
-namespace eigengrain::app {
-Goal::Goal(const assembly::State& state) : run_(state.settings.run) {
-  if (!state.settings.stages.empty()) {
-    run_ = state.settings.stages[static_cast<std::size_t>(state.progress.stage)].run;
-    first_step_ = state.progress.first_step;
-    start_ = state.progress.first_time;
-  }
-  if (!run_.any())
+namespace eigengrain::cycle {
+namespace {
+
+/// What the scene says, of the stage in hand where it has stages.
+const model::RunChoice& choice_of(const assembly::State& state) {
+  const model::Scene& settings = state.settings;
+  const model::RunChoice& run = settings.stages.empty()
+                                    ? settings.run
+                                    : settings.stages[static_cast<std::size_t>(state.progress.stage)].run;
+  if (!run.any())
     throw InputError(
         "the scene does not say how far to run; add run: {steps: 10000} to it, or --set run.steps=10000");
+  return run;
+}
+
+}  // namespace
+
+Goal::Goal(const assembly::State& state)
+    : Goal(choice_of(state), state.settings.stages.empty() ? 0 : state.progress.first_step,
+           state.settings.stages.empty() ? 0 : state.progress.first_time, state) {}
+
+Goal::Goal(const model::RunChoice& run, const assembly::State& from)
+    : Goal(run, from.step, from.time, from) {}
+
+Goal::Goal(const model::RunChoice& run, std::int64_t first_step, double start, const assembly::State& state)
+    : run_(run), first_step_(first_step), start_(start) {
   if (run_.steps) last_step_ = first_step_ + *run_.steps;
   if (run_.time) end_ = start_ + *run_.time;
   if (run_.wall_force)
@@ -55,4 +71,4 @@ double Goal::fraction(const assembly::State& state) const {
   return done;
 }
 
-}  // namespace eigengrain::app
+}  // namespace eigengrain::cycle
