@@ -61,6 +61,14 @@ void Equations::residual(Vec x, Vec r) {
   EIGENGRAIN_PETSC(VecRestoreArrayWrite(r, &out));
 }
 
+Vec3 Equations::total_force() const {
+  const model::Bodies& bodies = state_.model.bodies;
+  Vec3 total = Vec3::Zero();
+  for (std::int32_t row = 0; row < bodies.size(); ++row)
+    if (bodies.clumps.owner(row) == row) total += sum_.force[static_cast<std::size_t>(row)];
+  return total;
+}
+
 void Equations::adapt_step(double ratio_before, double ratio_now) {
   if (ratio_now <= ratio_before)
     longest_step_ = std::min(growth * longest_step_, greatest_step * reach_);
@@ -193,8 +201,10 @@ double Equations::shift_for(Vec r) const {
   double fastest = 0;
   EIGENGRAIN_PETSC(VecGetArrayRead(r, &force));
   EIGENGRAIN_PETSC(VecGetArrayRead(mass_.get(), &mass));
-  for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block)
-    fastest = std::max(fastest, Eigen::Map<const Vec3>(&force[3 * block]).norm() / mass[3 * block]);
+  for (std::int32_t block = 0; block < system_.unknowns.blocks(); ++block) {
+    const double least = Eigen::Map<const Vec3>(&mass[3 * block]).minCoeff();  // of three inertias
+    fastest = std::max(fastest, Eigen::Map<const Vec3>(&force[3 * block]).norm() / least);
+  }
   EIGENGRAIN_PETSC(VecRestoreArrayRead(mass_.get(), &mass));
   EIGENGRAIN_PETSC(VecRestoreArrayRead(r, &force));
   return fastest / longest_step_;

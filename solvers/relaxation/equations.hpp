@@ -28,6 +28,9 @@ class Equations {
 
   /// r(x) = -(contacts + gravity + applied loads) on the free components.
   void residual(Vec x, Vec r);
+  /// On all bodies where residual() was last asked, fixed ones too, N. As what bodies do to each other
+  /// cancels, its change is minus that of the forces on the walls.
+  Vec3 total_force() const;
   /// From now on walls have moved as well, to where the state has them; null: they rest.
   void set_walls(const assembly::WallStep* walls) { walls_ = walls; }
 

@@ -57,6 +57,10 @@ constexpr double few = 0.01;
 /// what is left to settle for the most part.
 constexpr std::array quiet_levels{1e-3, 1e-4, 1e-5};
 constexpr std::int64_t most_part_steps = 200000;  // at a time, before the whole is looked at
+/// A part costs two lists of the whole: where a few fly out of theirs before they had many steps, and more
+/// than once, so many steps of all are the better way.
+constexpr int most_short_parts = 3;
+constexpr std::int64_t steps_without_parts = 2000;
 
 /// Cycles by a method, of which the settings of the state know from now on.
 cycle::Cycle begin_cycle(State& state, Method method) {
@@ -86,11 +90,13 @@ class Relaxation {
     require_numbers(state_);
     require_support(state_);
     SetAside moving_parts(state_);
-    halt(state_);
-    look(state_);
-    result_.start = result_.end;
-    note_moment("start", true);
     try {
+      state_.list.growth = 0;  // nothing grows, and no cell is in motion: the list is of what stands
+      assembly::renew_list(state_, state_.list.skin);
+      halt(state_);
+      look(state_);
+      result_.start = result_.end;
+      note_moment("start", true);
       go();
     } catch (...) {
       if (state_.model.bodies.size() > 0) {  // else no motion could begin, and the state is gone with it
@@ -117,9 +123,7 @@ class Relaxation {
       descend_alone();
   }
 
-  bool done() const {
-    return at_rest_within(result_.end, options_.tolerance) && result_.missing_force <= options_.tolerance;
-  }
+  bool done() const { return at_rest_within(result_.end, options_.tolerance) && walls_are_driven(); }
   void look(const State& state) {
     result_.end = assembly::balance_of(state);
     result_.missing_force = missing_force(state.model);
@@ -136,13 +140,13 @@ class Relaxation {
       std::optional<double> few_left;
       if (newton_failed || !may_hand_over(ratio, {})) few_left = approach(ratio);
       if (done() || given_up()) break;
-      if (few_left || !settled_within(result_.end, ratio)) {
-        settle_movers(few_left.value_or(quiet_levels.back()));
+      if (few_left) {
+        settle_movers(*few_left);
         continue;
       }
       // What is found is all that rounding allows, even if it is not enough; but over meshes a committed
       // state may touch other triangles than Newton's method knew.
-      if (finish() && at_rest_within(result_.end, rounding_margin * least())) break;
+      if (finish() && at_rest_within(result_.end, rounding_margin * least()) && walls_are_driven()) break;
       // What a mover or two have kept it from may go on from here.
       if (const auto level = few_move(state_); level && !newton_failed) {
         newton_failed = true;
@@ -150,19 +154,21 @@ class Relaxation {
         continue;
       }
       newton_failed = true;
-      if (mean_of(result_.end) <= least()) break;
+      if (mean_of(result_.end) <= least() && walls_are_driven()) break;
       hand_over = std::min(ratio, mean_of(result_.end)) / 10;
     }
   }
 
   void descend_alone() {
     const bool walls_stand = options_.method == Method::fire;
+    bool driven = true;
+    // Again where the forces of dashpots were part of what looked like rest.
     do {
       descend(options_.method, [&](const State&) {
         return walls_stand ? at_rest_within(result_.end, options_.tolerance) : done();
       });
-      if (walls_stand && !given_up()) drive_walls();
-    } while (walls_stand && !done() && !given_up());
+      if (walls_stand && !given_up() && !walls_are_driven()) driven = drive_walls();
+    } while (driven && !done() && !given_up());
   }
 
   void newton_alone() {
@@ -172,6 +178,8 @@ class Relaxation {
       if (finish()) return;
     } while (!given_up() && mean_of(result_.end) < 0.5 * before);
   }
+
+  bool walls_are_driven() const { return result_.missing_force <= options_.tolerance; }
 
   bool given_up() const {
     return interrupted_ || result_.explicit_steps + result_.part_steps >= options_.max_steps;
@@ -302,6 +310,7 @@ class Relaxation {
 
   /// The ratio of all others where a few bodies are what keeps the state from coming to rest.
   std::optional<double> few_move(const State& state) const {
+    if (result_.explicit_steps < no_parts_before_) return std::nullopt;
     for (const double level : quiet_levels) {
       const Movers movers = movers_of(state, moving_force(level));
       const bool quiet =
@@ -318,11 +327,15 @@ class Relaxation {
     RelaxStage& now = stage("few");
     const double force = moving_force(ratio);
     const std::int64_t end = result_.part_steps + most_part_steps;
-    const auto go_on = [&] { return result_.part_steps < end && !given_up(); };
+    int short_parts = 0;
+    const auto go_on = [&] {
+      return result_.part_steps < end && short_parts < most_short_parts && !given_up();
+    };
     for (Movers movers = movers_of(state_, force); are_few(movers) && go_on();
          movers = movers_of(state_, force)) {
       Part part(state_, movers.bodies);
       cycle::Cycle cycle = begin_cycle(part.state(), Method::tracked);
+      const std::int64_t first = result_.part_steps;
       do {
         for (int k = 0; k < steps_between_looks && part.has_room(cycle.state()); ++k) {
           cycle.step();
@@ -331,8 +344,10 @@ class Relaxation {
         }
         ask_for_interrupts();
       } while (!movers_of(cycle.state(), force).bodies.empty() && part.has_room(cycle.state()) && go_on());
+      short_parts = result_.part_steps - first < steps_between_looks ? short_parts + 1 : 0;
       part.put_back(cycle.state(), state_);
     }
+    if (short_parts == most_short_parts) no_parts_before_ = result_.explicit_steps + steps_without_parts;
     halt(state_);
     look(state_);
     report(fmt::format("{} steps of a few that moved", grouped(result_.part_steps)));
@@ -359,20 +374,28 @@ class Relaxation {
       note(found, until_now, watch.seconds());
       if (interrupted_ || (!found.converged && !found.unfinished)) return false;
       if (!found.converged) continue;
-      if (result_.missing_force <= options_.tolerance) return true;
+      if (walls_are_driven()) return true;
       if (mean_of(result_.end) > rounding_margin * wanted.target) return true;  // see hybrid
-      drive_walls();
+      if (!drive_walls()) return false;
     }
     return false;
   }
 
-  /// Servo walls to where they push as they are asked to.
-  void drive_walls() {
-    if (result_.missing_force <= options_.tolerance || !has_servo_walls(state_.model)) return;
+  /// Servo walls to where they push as they are asked to; whether they are nearer to it. One that touches
+  /// nothing is for the explicit cycle.
+  bool drive_walls() {
+    const double before = result_.missing_force;
     const double reach = newton_reach * state_.list.skin;
     assembly::renew_list(state_, reach);
-    drive_servo_walls(state_, reach, options_.interrupted);
+    try {
+      drive_servo_walls(state_, reach, options_.interrupted);
+    } catch (const SolverError& error) {  // nothing has moved yet
+      ask_for_interrupts();
+      if (!interrupted_) result_.linear_failures.emplace_back(error.what());
+      return false;
+    }
     look(state_);
+    return result_.missing_force < before;
   }
 
   void note(const NewtonResult& found, double until_now, double seconds) {
@@ -414,6 +437,7 @@ class Relaxation {
   RelaxResult result_;
   Stopwatch watch_;
   std::int64_t sweeps_ = 0;
+  std::int64_t no_parts_before_ = 0;  ///< explicit step
   bool interrupted_ = false;
 };
 

@@ -39,9 +39,6 @@ double missing(const model::WallMotion& motion, const std::vector<assembly::Wall
   return motion.servo->force +
          loads[static_cast<std::size_t>(motion.wall)].force.dot(motion.servo->direction);
 }
-double missing(const model::WallMotion& motion, const assembly::Model& model) {
-  return missing(motion, assembly::wall_loads(model));
-}
 
 /// Where walls are, to be put back there.
 class WallPlaces {
@@ -106,10 +103,10 @@ Response response_of(State& state, Equations& equations, Vec x, const std::vecto
                     .follow = std::vector<Vector>(servos.size()),
                     .stiffness = Eigen::MatrixXd::Zero(count, count)};
   const double way = probe * reach;
+  const Vec3 total = equations.total_force();
   for (std::size_t s = 0; s < servos.size(); ++s) {
     const WallPlaces before(state.model);
     const model::WallMotion& motion = state.model.wall_motions[servos[s]];
-    const double missing_before = missing(motion, state.model);
     WallStep step(state.model);
     move_wall(state, servos[s], way, step);
     equations.set_walls(&step);
@@ -120,7 +117,7 @@ Response response_of(State& state, Equations& equations, Vec x, const std::vecto
     equations.residual(x, g);
     equations.set_walls(nullptr);
     const auto i = static_cast<Eigen::Index>(s);
-    response.stiffness(i, i) = (missing_before - missing(motion, state.model)) / way;
+    response.stiffness(i, i) = (equations.total_force() - total).dot(motion.servo->direction) / way;
     before.restore(state.model);
     EIGENGRAIN_PETSC(VecAYPX(g, -1, rest.get()));  // a residual is minus a force
     EIGENGRAIN_PETSC(VecScale(g, 1 / way));

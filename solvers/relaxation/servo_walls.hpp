@@ -17,8 +17,9 @@ double missing_force(const assembly::Model& model);
 ///
 ///     S w = missing forces        S = C - Gᵀ K⁻¹ G        u = K⁻¹ G w
 ///
-/// G the forces on bodies per way of a wall, by differences, C their sums on each wall. Where walls or bodies
-/// would leave what is listed up to `reach` (m), they go a part of the way. The list must be of that reach.
+/// G the forces on bodies per way of a wall, by differences, C their sums for each wall. Where walls or
+/// bodies would leave what is listed up to `reach` (m), they go a part of the way. The list must be of that
+/// reach.
 void drive_servo_walls(assembly::State& state, double reach, const std::function<bool()>& interrupted);
 
 }  // namespace eigengrain::relaxation

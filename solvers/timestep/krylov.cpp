@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,17 +70,21 @@ std::vector<Eigenpair> iterate(Mat matrix, Vec x, int count, const TruthOptions&
   return pairs;
 }
 
-/// The largest eigenpair in the space across those that were found; none where it did not converge.
-std::optional<Eigenpair> largest_beside(Mat matrix, const std::vector<Eigenpair>& found, Vec start,
-                                        double tolerance, PetscInt restarts) {
+/// The largest eigenpair in the space across those that were found. Throws SolverError where it does not
+/// converge to a residual of `residual` (absolute, so that zeros do at once).
+Eigenpair largest_beside(Mat matrix, const std::vector<Eigenpair>& found, Vec start, double residual,
+                         PetscInt restarts) {
   petsc::Eigensolver solver;
   EIGENGRAIN_PETSC(EPSCreate(PETSC_COMM_SELF, solver.put()));
   EIGENGRAIN_PETSC(EPSSetOperators(solver.get(), matrix, nullptr));
-  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_HEP));
   EIGENGRAIN_PETSC(EPSSetType(solver.get(), EPSKRYLOVSCHUR));
-  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
   EIGENGRAIN_PETSC(EPSSetDimensions(solver.get(), 1, krylov_vectors, PETSC_DEFAULT));
-  EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), tolerance, restarts));
+  EIGENGRAIN_PETSC(EPSSetFromOptions(solver.get()));
+  // What is asked for is no option.
+  EIGENGRAIN_PETSC(EPSSetProblemType(solver.get(), EPS_HEP));
+  EIGENGRAIN_PETSC(EPSSetWhichEigenpairs(solver.get(), EPS_LARGEST_REAL));
+  EIGENGRAIN_PETSC(EPSSetConvergenceTest(solver.get(), EPS_CONV_ABS));
+  EIGENGRAIN_PETSC(EPSSetTolerances(solver.get(), residual, restarts));
   std::vector<Vec> across;
   for (const Eigenpair& pair : found) across.push_back(pair.vector.get());
   EIGENGRAIN_PETSC(EPSSetDeflationSpace(solver.get(), static_cast<PetscInt>(across.size()), across.data()));
@@ -89,7 +92,11 @@ std::optional<Eigenpair> largest_beside(Mat matrix, const std::vector<Eigenpair>
   EIGENGRAIN_PETSC(EPSSolve(solver.get()));
   PetscInt converged = 0;
   EIGENGRAIN_PETSC(EPSGetConverged(solver.get(), &converged));
-  if (converged < 1) return std::nullopt;
+  if (converged < 1)
+    throw SolverError(fmt::format(
+        "whether {} eigenvalues are all there are of theirs was not found out in {} restarts; ask for "
+        "fewer, or give the solver more vectors (--petsc \"-eps_ncv 100\")",
+        found.size(), restarts));
   PetscScalar value = 0;
   Eigenpair pair{.vector = like(start)};
   EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), 0, &value, nullptr, pair.vector.get(), nullptr));
@@ -127,22 +134,27 @@ void require_eigenpair(const Eigenpair& pair, const char* what, const char* opti
 void find_left_out(Mat matrix, std::vector<Eigenpair>& pairs,
                    const std::function<petsc::Vector(std::uint64_t)>& start, double tolerance,
                    PetscInt restarts) {
-  constexpr double loose = 1e-5;    // the value errs by its square, which tells whether it is of interest
+  // With a residual r a value errs by r at most, in the midst of others, so one that lies below by more than
+  // that is of no interest.
+  constexpr double loose = 1e-6;
   constexpr double greater = 1e-9;  // of itself
-  for (std::uint64_t number = 1;; ++number) {
+  const double largest = pairs.front().value;
+  if (!(largest > 0)) return;
+  for (std::uint64_t number = 1; number <= 2 * pairs.size(); ++number) {
+    const double least = std::max(pairs.back().value, zero_part * largest);
     const petsc::Vector first = start(number);
-    std::optional<Eigenpair> more = largest_beside(matrix, pairs, first.get(), loose, restarts);
-    if (!more || !(more->value > (1 + greater) * pairs.back().value)) return;
-    const petsc::Vector close = std::move(more->vector);
-    more = largest_beside(matrix, pairs, close.get(), tolerance, restarts);
-    if (!more)
-      throw SolverError(
-          fmt::format("one of several equal eigenvalues did not converge to a residual of {}", tolerance));
+    Eigenpair more = largest_beside(matrix, pairs, first.get(), loose * least, restarts);
+    if (more.value + loose * least <= (1 + greater) * least) return;
+    const petsc::Vector close = std::move(more.vector);
+    more = largest_beside(matrix, pairs, close.get(), tolerance * least, restarts);
+    if (more.value <= (1 + greater) * least) return;
     const auto at =
-        std::ranges::find_if(pairs, [&](const Eigenpair& pair) { return pair.value < more->value; });
-    pairs.insert(at, std::move(*more));
+        std::ranges::find_if(pairs, [&](const Eigenpair& pair) { return pair.value < more.value; });
+    pairs.insert(at, std::move(more));
     pairs.pop_back();
   }
+  throw SolverError(fmt::format(
+      "{} eigenvalues were not all found: there were ever more of them; ask for fewer", pairs.size()));
 }
 
 std::vector<Eigenpair> largest_eigenpairs(StiffnessProduct& product, std::span<const double> scale, int count,

@@ -174,6 +174,7 @@ LowModes low_modes(const LinearSystem& system, int count, double largest, const 
     EIGENGRAIN_PETSC(EPSGetEigenpair(solver.get(), k, &value, nullptr, pair.vector.get(), nullptr));
     pair.value = value;
   }
+  solver = petsc::Eigensolver();  // its vectors are as many again
   if (count > 1 && converged >= count && count < free)
     find_left_out(slow.mat(), pairs, resisted, tolerance, most_restarts);
   LowModes result{.floor = floor};

@@ -5,6 +5,7 @@
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/io/state_file.hpp"
 #include "eigengrain/measures/acting_contacts.hpp"
+#include "eigengrain/petsc/session.hpp"
 #include "eigengrain/relaxation/prescribed.hpp"
 #include "eigengrain/relaxation/relax.hpp"
 
@@ -68,6 +69,7 @@ std::string add_to(LoadingPath& path, const std::string& text) {
   if (key == "strain") {
     const auto numbers = numbers_in(value);
     if (!numbers || numbers->size() != 9) return "a strain has three rows of three numbers";
+    if (path.strain) return "there is a strain already; write their sum";
     path.strain = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers->data());
     return "";
   }
@@ -91,15 +93,40 @@ std::string add_to(LoadingPath& path, const std::string& text) {
   return "";
 }
 
+fs::path breaks_of(const fs::path& state) {
+  return state.parent_path() / (state.stem().string() + "-breaks.csv");
+}
+
 fs::path state_file(const Input& input, int increment) {
   return input.folder / fmt::format("{}-load-{:04}.h5", input.stem, increment);
 }
 
-/// The last increment that has its state, or 0.
-int last_saved(const Input& input, int increments) {
+/// Part of the path at the end of an increment.
+double part_at(int increment, int increments) {
+  return static_cast<double>(increment) / increments;
+}
+
+/// States of a path that was followed here before.
+void remove_states(const Input& input) {
+  for (int k = 1; fs::remove(state_file(input, k)); ++k) fs::remove(breaks_of(state_file(input, k)));
+}
+
+/// The last increment that has its line in the table and its state, or 0. Throws InputError where the table
+/// is of a path with other increments.
+int last_saved(const Input& input, const fs::path& table, int increments) {
+  std::ifstream in(table);
+  std::string line;
+  std::getline(in, line);
   int last = 0;
-  for (int k = 1; k <= increments; ++k)
-    if (fs::exists(state_file(input, k))) last = k;
+  while (std::getline(in, line) && fs::exists(state_file(input, last + 1))) {
+    ++last;
+    const std::string expected = fmt::format("{},{},", last, part_at(last, increments));
+    if (!line.starts_with(expected))
+      throw InputError(fmt::format(
+          "--continue: {} has \"{}\" for increment {}, and with --increments {} it would begin with \"{}\": "
+          "ask for as many increments as before, or begin anew without --continue",
+          table.string(), line.substr(0, line.find(',', line.find(',') + 1)), last, increments, expected));
+  }
   return last;
 }
 
@@ -120,9 +147,9 @@ class LoadTable {
     require(out);
   }
 
-  void add(int increment, double part, const relaxation::RelaxResult& result, const State& state) const {
-    const ContactStatuses statuses = statuses_of(state);
-    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", increment, part, result.end.mean,
+  void add(int increment, double part, const relaxation::RelaxResult& result, const State& state,
+           const ContactStatuses& statuses) const {
+    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{}", increment, part, mean_of(result),
                                    result.explicit_steps, result.newton_iterations, result.linear_iterations,
                                    result.end.contacts, statuses.slipping, statuses.bonded,
                                    result.end.mean_contact_force, assembly::energies_of(state).elastic);
@@ -181,14 +208,32 @@ void apply(const LoadingPath& path, double from, double to, Input& input, const 
                             (to - from) * *path.strain * (Mat3::Identity() + from * *path.strain).inverse());
 }
 
+/// As of a velocity_gradient in a scene.
+void check_strain(const Mat3& strain, const State& state) {
+  const model::PeriodicCell& cell = state.model.cell;
+  if (!cell.any())
+    throw InputError("--load strain: the scene has no periodic cell; add periodic, or move walls");
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      if (strain(i, j) == 0) continue;
+      for (const int axis : {i, j})
+        if (!cell.periodic[static_cast<std::size_t>(axis)])
+          throw InputError(fmt::format(
+              "--load strain: {} in row {}, column {}, and the cell does not repeat along {}; write 0 there",
+              strain(i, j), i + 1, j + 1, "xyz"[axis]));
+    }
+  if (!state.model.surfaces.empty())
+    throw InputError(fmt::format("--load strain: {} cannot deform with the cell; take planes instead",
+                                 state.model.surfaces.front().name));
+}
+
 void check_path(const LoadingPath& path, const State& state) {
   for (const WallPath& wall : path.walls)
     if (wall.wall >= static_cast<std::int32_t>(state.model.wall_count()))
       throw InputError(
           fmt::format("--load displacement.{}: there is no such wall; walls are numbered from 0 to {}",
                       wall.wall, static_cast<int>(state.model.wall_count()) - 1));
-  if (path.strain && !state.model.cell.any())
-    throw InputError("--load strain: the scene has no periodic cell; add periodic, or move walls");
+  if (path.strain) check_strain(*path.strain, state);
 }
 
 }  // namespace
@@ -217,45 +262,66 @@ void relax_along(const Options& options) {
   Input input = read_input(options);
   print_notes(input.state.settings);
   check_path(path, input.state);
-  const int done = options.continues ? last_saved(input, options.increments) : 0;
   const fs::path table_file = input.folder / (input.stem + "-load.csv");
+  const int done = options.continues ? last_saved(input, table_file, options.increments) : 0;
   if (done > 0) {
     input.state = io::read_state(state_file(input, done));
     LoadTable::cut(table_file, done);
     fmt::print("continues behind {}\n", state_file(input, done).string());
+  } else {
+    remove_states(input);
   }
   const LoadTable table(input, table_file, done);
   nlohmann::ordered_json increments = nlohmann::ordered_json::array();
+  const auto report = [&] {
+    write_json(options.json, {{"increments", increments}, {"table", table_file.string()}});
+  };
+  const fs::path nearest = input.folder / (input.stem + "-load-nearest.h5");
   for (int k = done + 1; k <= options.increments; ++k) {
-    const auto part = [&](int increment) { return static_cast<double>(increment) / options.increments; };
-    apply(path, part(k - 1), part(k), input, input.folder / (input.stem + "-load.h5"));
-    const relaxation::RelaxResult result =
-        relax_with_reports(input.state, options.tolerance, options.max_steps, method);
-    if (interrupted() != 0) throw Interrupted{interrupted()};
-    const fs::path file = state_file(input, k);
-    if (!result.converged) {
-      const fs::path nearest = input.folder / (input.stem + "-load-nearest.h5");
-      io::write_state(input.state, nearest);
-      throw SolverError(
-          fmt::format("no equilibrium within {:g} was found at {:g} of the path (ratio {:.1e} after {}); "
-                      "the nearest state is in {}, the last equilibrium is increment {}",
-                      options.tolerance, part(k), result.end.mean,
-                      counted(result.explicit_steps, "step", "steps"), nearest.string(), k - 1));
+    const double part = part_at(k, options.increments);
+    apply(path, part_at(k - 1, options.increments), part, input,
+          input.folder / ("." + input.stem + "-load.part.h5"));
+    const auto stop_short = [&] {
+      save_equilibrium(input.state, nearest);
+      report();
+    };
+    relaxation::RelaxResult result;
+    try {
+      result = relax_or_save(input.state, options.tolerance, options.max_steps, method, nearest);
+    } catch (const SolverError&) {
+      report();
+      throw;
     }
-    input.state.breaks.clear();
-    table.add(k, part(k), result, input.state);
-    io::write_state(input.state, file);
-    increments.push_back({{"part", part(k)},
+    if (interrupted() != 0) {
+      stop_short();
+      throw Interrupted{interrupted()};
+    }
+    if (!result.converged) {
+      stop_short();
+      throw SolverError(fmt::format(
+          "no equilibrium within {:g} was found at {:g} of the path (ratio {:.1e} after {}){}; "
+          "the nearest state is in {}, the last equilibrium is increment {}",
+          options.tolerance, part, mean_of(result), counted(result.explicit_steps, "step", "steps"),
+          why_not(result, options.tolerance), nearest.string(), k - 1));
+    }
+    const fs::path file = state_file(input, k);
+    const ContactStatuses statuses = statuses_of(input.state);
+    table.add(k, part, result, input.state, statuses);
+    save_equilibrium(input.state, file);
+    increments.push_back({{"part", part},
                           {"steps", result.explicit_steps},
                           {"iterations", result.newton_iterations},
-                          {"mean", result.end.mean},
+                          {"mean", mean_of(result)},
+                          {"bonds_broken", input.state.breaks.size()},
                           {"state", file.string()}});
-    fmt::print("{:g} of the path: {}, {} of Newton, ratio {:.1e}, {}\n", part(k),
+    input.state.breaks.clear();
+    fmt::print("{:g} of the path: {}, {} of Newton, ratio {:.1e}, {}\n", part,
                counted(result.explicit_steps, "explicit step", "explicit steps"),
-               counted(result.newton_iterations, "iteration", "iterations"), result.end.mean,
-               text_of(statuses_of(input.state)));
+               counted(result.newton_iterations, "iteration", "iterations"), mean_of(result),
+               text_of(statuses));
   }
-  write_json(options.json, {{"increments", increments}, {"table", table_file.string()}});
+  report();
+  if (!options.petsc.empty()) petsc::require_options_used();
 }
 
 }  // namespace eigengrain::app

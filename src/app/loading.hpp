@@ -43,8 +43,10 @@ struct LoadingPath {
 LoadingPath path_of(const std::vector<std::string>& loads);
 
 /// Relaxes at the end of every increment of the path, saves STEM-load-K.h5 there, and adds a line to
-/// STEM-load.csv. With --continue it goes on behind the last of these states. Throws SolverError where an
-/// increment finds no equilibrium, Interrupted after an interrupt; what was saved before stays.
+/// STEM-load.csv; bonds that broke on the way to it are in STEM-load-K-breaks.csv. With --continue it goes on
+/// behind the last of these states, else they are removed at the start. Throws SolverError where an increment
+/// finds no equilibrium, Interrupted after an interrupt: the nearest state is then in STEM-load-nearest.h5,
+/// and what was saved before stays.
 void relax_along(const Options& options);
 
 }  // namespace eigengrain::app

@@ -1,6 +1,4 @@
 #include "eigengrain/base/error.hpp"
-#include "eigengrain/io/break_file.hpp"
-#include "eigengrain/io/state_file.hpp"
 #include "eigengrain/io/suggest.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/relaxation/relax.hpp"
@@ -41,23 +39,6 @@ relaxation::Method method_of(const std::string& option, const std::string& name)
                                io::did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
-/// ": 2 groups of bodies fall, ..." where some do.
-std::string text_of_floating(const RelaxResult& result) {
-  if (result.floating.empty()) return "";
-  const relaxation::Floating& largest = result.floating.front();
-  return fmt::format(
-      ": {} that neither a wall nor a held body touches {} under its loads, the largest of {} "
-      "(with ball {})",
-      counted(std::ssize(result.floating), "group of bodies", "groups of bodies"),
-      result.floating.size() == 1 ? "moves" : "move", counted(largest.bodies, "body", "bodies"),
-      largest.first);
-}
-
-std::string text_of_servo(const RelaxResult& result, double tolerance) {
-  if (result.missing_force <= tolerance) return "";
-  return fmt::format(": a servo wall misses {:.2g} of its force", result.missing_force);
-}
-
 nlohmann::ordered_json stages_of(const RelaxResult& result) {
   nlohmann::ordered_json stages = nlohmann::ordered_json::array();
   for (const relaxation::RelaxStage& stage : result.stages)
@@ -70,30 +51,19 @@ nlohmann::ordered_json stages_of(const RelaxResult& result) {
   return stages;
 }
 
-/// What a solver that gave up leaves is saved before it is told.
-RelaxResult relax_or_save(State& state, const Options& options, relaxation::Method method,
-                          const std::filesystem::path& file) {
-  try {
-    return relax_with_reports(state, options.tolerance, options.max_steps, method);
-  } catch (const SolverError& error) {
-    io::write_state(state, file);
-    throw SolverError(fmt::format("{}; the last good state is in {}", error.what(), file.string()));
-  }
-}
-
-bool has_servo(const State& state) {
-  return std::ranges::any_of(state.model.wall_motions,
-                             [](const auto& motion) { return motion.servo.has_value(); });
-}
-
 /// The same start by another method, and how far its end is from this one: as text, and in the report.
 std::string compare_with(relaxation::Method method, State state, const State& end, const Options& options,
                          nlohmann::ordered_json& report) {
   const std::string name(relaxation::name_of(method));
-  const RelaxResult other = relax_with_reports(state, options.tolerance, options.max_steps, method);
+  RelaxResult other;
+  try {
+    other = relax_with_reports(state, options.tolerance, options.max_steps, method);
+  } catch (const SolverError& error) {
+    return fmt::format("nothing to compare with: {}", error.what());
+  }
   if (!other.converged)
     return fmt::format("{} found no equilibrium in {} to compare with (ratio {:.1e})", name,
-                       counted(other.explicit_steps, "step", "steps"), other.end.mean);
+                       counted(other.explicit_steps, "step", "steps"), mean_of(other));
   const EquilibriumDifference difference = difference_of(state, end);
   report["against"] = to_json(difference);
   report["against"]["method"] = name;
@@ -120,7 +90,9 @@ nlohmann::ordered_json to_json(const RelaxResult& result, const State& state) {
                                 {"seconds", result.seconds},
                                 {"explicit_seconds", result.explicit_seconds},
                                 {"start", {{"mean", result.start.mean}, {"max", result.start.max}}}};
-  if (has_servo(state)) report["missing_force"] = result.missing_force;
+  if (std::ranges::any_of(state.model.wall_motions,
+                          [](const auto& motion) { return motion.servo.has_value(); }))
+    report["missing_force"] = result.missing_force;
   add_balance(report, result.end);
   report["statuses"] = to_json(statuses_of(state));
   report["reactions"] = reactions_of(state);
@@ -135,24 +107,25 @@ void relax(const Options& options) {
   std::optional<relaxation::Method> against;
   if (!options.against.empty()) against = method_of("--against", options.against);
   if (!options.petsc.empty()) petsc::set_options(options.petsc);
-  if (!options.loads.empty()) return relax_along(options);
+  if (!options.loads.empty()) {
+    if (against)
+      throw InputError("--against compares one equilibrium, and --load finds many; leave one of the two out");
+    return relax_along(options);
+  }
   Input input = read_input(options);
   print_notes(input.state.settings);
   const std::optional<State> start = against ? std::optional<State>(input.state) : std::nullopt;
   const std::filesystem::path file = input.folder / (input.stem + "-relaxed.h5");
-  const RelaxResult result = relax_or_save(input.state, options, method, file);
-  io::write_state(input.state, file);
+  const RelaxResult result = relax_or_save(input.state, options.tolerance, options.max_steps, method, file);
+  save_equilibrium(input.state, file);
   auto report = to_json(result, input.state);
   report["state"] = file.string();
   std::string difference;
   if (against && result.converged) difference = compare_with(*against, *start, input.state, options, report);
   if (!input.state.breaks.empty()) report["bonds_broken"] = input.state.breaks.size();
   write_json(options.json, report);
-  if (!input.state.breaks.empty()) {
-    // Where a run from the relaxed state goes on with the table.
-    io::BreakFile(input.folder, input.stem + "-relaxed-breaks.csv", std::nullopt).add(input.state.breaks);
+  if (!input.state.breaks.empty())
     fmt::print("{} broke on the way\n", counted(std::ssize(input.state.breaks), "bond", "bonds"));
-  }
   fmt::print("{}: {}{} in {} ({}), {} of Newton\n{}\nstate: {}\n", input.state.settings.name,
              counted(result.explicit_steps, "explicit step", "explicit steps"),
              result.part_steps > 0 ? fmt::format(" and {} of a few balls", grouped(result.part_steps)) : "",
@@ -165,14 +138,8 @@ void relax(const Options& options) {
   // After all is saved, and only where Newton had a chance to ask for them.
   if (!options.petsc.empty() && result.attempts > 0) petsc::require_options_used();
   if (!result.converged)
-    throw SolverError(fmt::format(
-        "no equilibrium within {:g} was found{}{}{}; the nearest state is in {}", options.tolerance,
-        text_of_floating(result), text_of_servo(result, options.tolerance),
-        options.tolerance < 1.5 * result.end.floor
-            ? fmt::format(" (the rounding of positions alone makes {:.1e}: ask for no less than twice that)",
-                          result.end.floor)
-            : "",
-        file.string()));
+    throw SolverError(fmt::format("no equilibrium within {:g} was found{}; the nearest state is in {}",
+                                  options.tolerance, why_not(result, options.tolerance), file.string()));
 }
 
 }  // namespace eigengrain::app

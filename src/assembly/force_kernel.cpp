@@ -102,16 +102,16 @@ class BallSums {
   void run() {
     const std::span<const Candidate> all = work_.candidates;
     const auto count = static_cast<std::int32_t>(all.size());
-    std::int32_t k = 0;
-    for (; k + lanes <= count; k += lanes) {
-      for (int lane = 0; lane < lanes; ++lane) fetch(all[std::min(k + ahead + lane, count - 1)]);
-      advance(&all[k], lanes);
+    // In one place, so that the arithmetic of a contact is the same wherever in the list it stands. Lanes
+    // beyond the last contact repeat it, and nothing is stored of them.
+    std::array<Candidate, lanes> chosen;
+    for (std::int32_t k = 0; k < count; k += lanes) {
+      for (int lane = 0; lane < lanes; ++lane) {
+        fetch(all[std::min(k + ahead + lane, count - 1)]);
+        chosen[lane] = all[std::min(k + lane, count - 1)];
+      }
+      advance(chosen.data(), std::min(lanes, count - k));
     }
-    if (k == count) return;
-    // Lanes beyond the last contact repeat it, and nothing is stored of them.
-    std::array<Candidate, lanes> last;
-    for (int lane = 0; lane < lanes; ++lane) last[lane] = all[std::min(k + lane, count - 1)];
-    advance(last.data(), count - k);
   }
 
  private:

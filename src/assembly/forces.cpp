@@ -198,7 +198,7 @@ void ContactForceSum::pack_bodies(const Model& model, const Trial& trial) {
   way_ += 2 * std::numbers::sqrt2 * *std::ranges::max_element(ways_);
   // Also of a cell whose edges move the images.
   selects_ = !(way_ < margin_) || trial.cell_step != nullptr;
-  if (selects_) way_ = 0;
+  if (selects_) way_ = infinity;  // until it is done
 }
 
 template <class Group>
@@ -322,10 +322,12 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
                }
              });
   add_foreign(sum);
-  if constexpr (commit)
+  if constexpr (commit) {
+    if (selects_) way_ = 0;
     for (const GroupPlan& plan : plans_)
       for (const std::vector<BondBreak>& found : plan.broken)
         broken_.insert(broken_.end(), found.begin(), found.end());
+  }
 }
 
 void ContactForceSum::add_foreign(BodyForces& sum) const {

@@ -17,10 +17,15 @@ namespace {
 using assembly::State;
 using measures::ActingContact;
 
-/// Sorted by the rows of their sides; several between the same two, as of clumps, by their order.
+/// What makes a contact the same in two states. Images do not: a body may have been put back into the cell in
+/// one of them.
+auto sides_of(const ActingContact& c) {
+  return std::tuple(c.a, c.b, c.ball_a, c.ball_b);
+}
+
 std::vector<ActingContact> sorted_contacts(const State& state) {
   std::vector<ActingContact> contacts = measures::acting_contacts(state.model);
-  std::ranges::stable_sort(contacts, {}, [](const ActingContact& c) { return std::tuple(c.a, c.b); });
+  std::ranges::stable_sort(contacts, {}, sides_of);
   return contacts;
 }
 
@@ -35,7 +40,8 @@ void compare_places(const State& first, const State& second, EquilibriumDifferen
   double radii = 0;
   double squares = 0;
   for (std::size_t i = 0; i < bodies.position.size(); ++i) {
-    const double squared = (bodies.position[i] - second.model.bodies.position[i]).squaredNorm();
+    const double squared =
+        shortest(first.model.cell, bodies.position[i] - second.model.bodies.position[i]).squaredNorm();
     squares += squared;
     result.max_distance = std::max(result.max_distance, squared);
     radii += bodies.radius[i];
@@ -46,6 +52,14 @@ void compare_places(const State& first, const State& second, EquilibriumDifferen
 }
 
 }  // namespace
+
+Vec3 shortest(const model::PeriodicCell& cell, const Vec3& difference) {
+  if (!cell.any()) return difference;
+  Vec3 middle = cell.origin;
+  for (int k = 0; k < 3; ++k)
+    if (cell.periodic[static_cast<std::size_t>(k)]) middle += 0.5 * cell.edges.col(k);
+  return cell.wrapped(middle + difference) - middle;
+}
 
 EquilibriumDifference difference_of(const State& first, const State& second) {
   EquilibriumDifference result;
@@ -59,12 +73,11 @@ EquilibriumDifference difference_of(const State& first, const State& second) {
   auto r = right.begin();
   while (l != left.end() || r != right.end()) {
     ++count;
-    const auto of = [](const ActingContact& c) { return std::tuple(c.a, c.b); };
-    if (r == right.end() || (l != left.end() && of(*l) < of(*r))) {
+    if (r == right.end() || (l != left.end() && sides_of(*l) < sides_of(*r))) {
       squares += l->force.squaredNorm();
       sum += l++->force.norm();
       ++result.only_first;
-    } else if (l == left.end() || of(*r) < of(*l)) {
+    } else if (l == left.end() || sides_of(*r) < sides_of(*l)) {
       squares += r++->force.squaredNorm();
       ++result.only_second;
     } else {

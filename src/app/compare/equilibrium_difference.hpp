@@ -20,6 +20,9 @@ struct EquilibriumDifference {
   std::int64_t only_second = 0;
 };
 
+/// The shortest way between two places that may stand for their images in the cell, m.
+Vec3 shortest(const model::PeriodicCell& cell, const Vec3& difference);
+
 /// The states have the same rows.
 EquilibriumDifference difference_of(const assembly::State& first, const assembly::State& second);
 

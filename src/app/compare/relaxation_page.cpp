@@ -136,7 +136,7 @@ void add_table(const RelaxedScene& scene, Page& page) {
       continue;
     }
     add_moment(row, run.reaches(coarse));
-    add_moment(row, run.result.converged ? run.reaches(mean_of(run)) : std::nullopt);
+    add_moment(row, run.reaches_end());
     row.push_back({grouped(run.result.explicit_steps + run.result.part_steps)});
     row.push_back({grouped(run.result.newton_iterations)});
     row.push_back({grouped(run.result.linear_iterations)});
@@ -162,9 +162,8 @@ std::string verdict_of(const RelaxedScene& scene, double tolerance) {
   const MethodRun* best = run_of(relaxation::Method::hybrid);
   if (plain == nullptr || best == nullptr) return "";
   std::string text;
-  const auto times = [&](double ratio, const std::string& what) {
-    const auto slow = plain->reaches(ratio);
-    const auto fast = best->reaches(ratio);
+  using End = std::optional<relaxation::Moment>;
+  const auto times = [&](const End& slow, const End& fast, const std::string& what) {
     if (!slow || !fast || !(fast->seconds > 0) || fast->sweeps == 0) return;
     text += fmt::format(
         "To {} the default method takes {} times fewer seconds and {} times fewer sweeps than "
@@ -172,9 +171,8 @@ std::string verdict_of(const RelaxedScene& scene, double tolerance) {
         what, number_text(slow->seconds / fast->seconds),
         number_text(static_cast<double>(slow->sweeps) / static_cast<double>(fast->sweeps)));
   };
-  times(coarse, "a ratio of 0.001");
-  if (plain->result.converged && best->result.converged)
-    times(std::max(mean_of(*plain), mean_of(*best)), fmt::format("the end ({:.0e})", tolerance));
+  times(plain->reaches(coarse), best->reaches(coarse), "a ratio of 0.001");
+  times(plain->reaches_end(), best->reaches_end(), fmt::format("the end ({:.0e})", tolerance));
   if (!plain->result.converged)
     text += fmt::format("Explicit cycles did not come to {:.0e} in {} steps. ", tolerance,
                         grouped(plain->result.explicit_steps));

@@ -32,6 +32,9 @@ struct MethodRun {
 
   /// The first moment from which on the ratio stays at or below this.
   std::optional<relaxation::Moment> reaches(double ratio) const;
+  /// The first from which on it stays at that of the end, as it was in motion or is at rest; none where no
+  /// equilibrium was found.
+  std::optional<relaxation::Moment> reaches_end() const;
 };
 
 struct RelaxedScene {
@@ -48,8 +51,8 @@ struct RelaxationReport {
   std::vector<RelaxedScene> scenes;
 };
 
-/// All methods on all scenes, with a line for each on the error stream. Throws InputError with the mistakes
-/// of all scenes before the first is run.
+/// All methods on all scenes, with a line for each on the error stream. A scene with a mistake is left out
+/// where there are others, and says why; throws InputError where it is the only one.
 RelaxationReport compare_relaxations(const Options& options);
 
 void print(const RelaxationReport& report);

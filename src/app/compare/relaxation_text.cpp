@@ -77,7 +77,7 @@ void print(const RelaxationReport& report) {
         fmt::print("{:>10} {}\n", run.name, run.failure);
         continue;
       }
-      const std::optional<Moment> end = run.result.converged ? run.reaches(mean_of(run)) : std::nullopt;
+      const std::optional<Moment> end = run.reaches_end();
       fmt::print("{:>10} {:>9} {:>9} {:>10} {:>10} {:>9} {:>6} {:>8} {:>9.1e}  {}\n", run.name,
                  seconds_text(run.reaches(coarse)), seconds_text(end), sweeps_text(run.reaches(coarse)),
                  sweeps_text(end), grouped(run.result.explicit_steps + run.result.part_steps),

@@ -37,7 +37,8 @@ class Places {
     std::vector<Distance> distances;
     for (std::size_t k = 0; k < moments_.size(); ++k) {
       double squares = 0;
-      for (std::size_t i = 0; i < last.size(); ++i) squares += (places_[k][i] - last[i]).squaredNorm();
+      for (std::size_t i = 0; i < last.size(); ++i)
+        squares += shortest(end.model.cell, places_[k][i] - last[i]).squaredNorm();
       distances.push_back({moments_[k], std::sqrt(squares / count) / (radii / count)});
     }
     return distances;
@@ -115,6 +116,11 @@ std::optional<Moment> MethodRun::reaches(double ratio) const {
       found = moment;
   }
   return found;
+}
+
+std::optional<Moment> MethodRun::reaches_end() const {
+  if (!result.converged || result.course.empty()) return std::nullopt;
+  return reaches(std::max({result.course.back().mean, result.end.mean, result.end.moment_mean}));
 }
 
 RelaxationReport compare_relaxations(const Options& options) {
