@@ -128,6 +128,13 @@ damping: {local: 0.7}
         printed, _ = self.relax(BED, *load, "--continue")
         self.assertIn("continues behind", printed)
         self.assertEqual(self.table(), whole)
+        said = self.fail_with("relax", self.scene(BED), "--output", self.folder, *load[:2], "--increments", "5",
+                              "--continue")
+        self.assertIn("as many increments as before", said)
+        # Anew: nothing of the longer path stays.
+        self.relax(BED, *load[:2], "--increments", "2", "--tolerance", "1e-8")
+        self.assertFalse((self.folder / "bed-load-0003.h5").exists())
+        self.assertEqual(len(self.table()), 2)
 
     def test_strains_the_cell(self):
         self.relax(CELL, "--load", "strain=[[-0.002, 0, 0], [0, -0.002, 0], [0, 0, -0.002]]", "--increments", "2",
