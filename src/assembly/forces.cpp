@@ -15,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <numbers>
@@ -97,6 +98,17 @@ bool remembers(const State& state) {
   std::uint64_t differs = 0;
   for (std::size_t k = 0; k < of_state.size(); ++k) differs |= of_state[k] ^ of_never[k];
   return differs != 0;
+}
+
+/// Largest number of edges along one axis between a body and an image that it may touch.
+double farthest_image(const Model& model) {
+  int farthest = 0;
+  model.contacts.for_each_group([&](const auto& group) {
+    if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body)
+      for (const contact::Pair& pair : group.pairs)
+        for (const std::int8_t edges : pair.image) farthest = std::max(farthest, std::abs(int{edges}));
+  });
+  return farthest;
 }
 
 /// A thread's sums of the chunk that it works on: they stay in the processor's cache from one chunk to the
@@ -207,8 +219,9 @@ void ContactForceSum::pack_bodies(const Model& model, const Trial& trial) {
   // A step and a growth of the radius each bring two bodies nearer; both are at most √2 of the root of
   // squares.
   way_ += 2 * std::numbers::sqrt2 * *std::ranges::max_element(ways_);
-  // Also of a cell whose edges move the images.
-  selects_ = !(way_ < margin_) || trial.cell_step != nullptr;
+  if (trial.cell_step != nullptr)  // the edges carry images along
+    way_ += farthest_image(model) * trial.cell_step->colwise().norm().sum();
+  selects_ = !(way_ < margin_);
   if (selects_) way_ = infinity;  // until it is done
 }
 
