@@ -89,6 +89,7 @@ class ScriptRun {
           give_way();
         }
         look();
+        tell();
         if (!over && (state().step - first) % every_ != 0) attend();
       } catch (const py::error_already_set&) {
         interrupt = std::current_exception();
@@ -149,6 +150,9 @@ class ScriptRun {
     if (since_.seconds() - last_ < seconds_between_interrupts) return;
     last_ = since_.seconds();
     look_for_interrupt();
+    tell();
+  }
+  void tell() {
     if (report_.is_none()) return;
     const py::gil_scoped_acquire gil;
     report_(state().step, state().time);
