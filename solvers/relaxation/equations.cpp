@@ -1,5 +1,6 @@
 #include "equations.hpp"
 
+#include "eigengrain/assembly/body_size.hpp"
 #include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/loads.hpp"
 #include "eigengrain/assembly/tangent.hpp"
@@ -189,12 +190,6 @@ void Equations::carry_clumps() {
   assembly::carry_members(state_.model.bodies, carried_);
 }
 
-double Equations::size_of(std::int32_t body) const {
-  const std::int32_t clump = clumps().of(body);
-  return clump == model::Clumps::none ? state_.model.bodies.radius[static_cast<std::size_t>(body)]
-                                      : clumps().radius[static_cast<std::size_t>(clump)];
-}
-
 double Equations::shift_for(Vec r) const {
   const PetscScalar* force = nullptr;
   const PetscScalar* mass = nullptr;
@@ -216,7 +211,7 @@ void Equations::fill_scale() {
   EIGENGRAIN_PETSC(VecGetArrayWrite(scale_.get(), &scale));
   EIGENGRAIN_PETSC(VecGetArrayWrite(mass_.get(), &mass));
   for_each_number([&](std::size_t number, std::int32_t body, int, bool turns, bool) {
-    scale[number] = turns ? 1.0 / size_of(body) : 1.0;
+    scale[number] = turns ? 1.0 / assembly::size_of(state_.model.bodies, body) : 1.0;
     mass[number] = system_.mass[number] * scale[number] * scale[number];
   });
   EIGENGRAIN_PETSC(VecRestoreArrayWrite(scale_.get(), &scale));

@@ -61,8 +61,6 @@ class Equations {
   void gather_forces();
   /// What the unknowns of clumps, along their axes, mean for their balls.
   void carry_clumps();
-  /// Of a body, where θ has moved its surface by as much as u = R θ, m.
-  double size_of(std::int32_t body) const;
 
   /// σ: with it alone, the body that is accelerated most would step by longest_step.
   double shift_for(Vec r) const;

@@ -1,5 +1,6 @@
 #include "part.hpp"
 
+#include "eigengrain/assembly/body_size.hpp"
 #include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
@@ -80,12 +81,6 @@ assembly::BodyForces forces_on_bodies(const State& state) {
   return forces;
 }
 
-/// The size that turns a moment into a force, m.
-double size_of(const model::Bodies& bodies, std::int32_t row) {
-  const std::int32_t clump = bodies.clumps.of(row);
-  return clump == model::Clumps::none ? bodies.radius[row] : bodies.clumps.radius[clump];
-}
-
 template <class Group>
 bool touches(const contact::Pair& pair, const std::vector<char>& marked) {
   if constexpr (Group::KinematicsType::second_is_body)
@@ -150,7 +145,7 @@ Movers movers_of(const State& state, double force) {
         model::free_part(forces.force[i] + assembly::load_on(state.model, i), fixed.translation()).norm();
     const Vec3 moment =
         state.turns() ? Vec3(forces.moment[i] + assembly::moment_on(state.model, i)) : Vec3(Vec3::Zero());
-    const double turn = model::free_part(moment, fixed.rotation()).norm() / size_of(bodies, body);
+    const double turn = model::free_part(moment, fixed.rotation()).norm() / assembly::size_of(bodies, body);
     // Nothing touches a body without any force, and loads take it along, however light it is.
     const bool falls = (push > 0 || turn > 0) && forces.force[i].isZero(0);
     if (falls || std::max(push, turn) > force) {

@@ -3,7 +3,7 @@
 #include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/contact_list.hpp"
 #include "eigengrain/assembly/forces.hpp"
-#include "eigengrain/assembly/moving_walls.hpp"
+#include "eigengrain/assembly/step_wall.hpp"
 #include "eigengrain/base/error.hpp"
 
 #include <fmt/format.h>
@@ -31,17 +31,6 @@ std::size_t motion_of(const assembly::Model& model, std::int32_t wall) {
       "{} cannot be moved: states know only where walls are that may move; give it "
       "velocity: [0, 0, 0] in the scene",
       w < model.walls.size() ? model.walls[w].name : model.surfaces[w - model.walls.size()].name));
-}
-
-void carry(const State& state, const model::WallMotion& motion, const model::WallPose& pose,
-           std::vector<model::Plane>& planes, std::vector<contact::SurfacePlace>& surfaces) {
-  const auto w = static_cast<std::size_t>(motion.wall);
-  if (w < planes.size()) {
-    model::carry(state.settings.walls[w], motion, pose, planes[w]);
-  } else {
-    surfaces[w - planes.size()].pose = pose;
-    surfaces[w - planes.size()].moved = true;
-  }
 }
 
 /// Contacts take part in a displacement of balls, walls and cell; everything else has happened.
@@ -80,17 +69,11 @@ int parts_of(double way, double skin) {
 
 void displace_wall(State& state, std::int32_t wall, const Vec3& displacement) {
   const std::size_t m = motion_of(state.model, wall);
-  const model::WallMotion& motion = state.model.wall_motions[m];
   const int parts = parts_of(displacement.norm(), state.list.skin);
   const Displacement rest = at_rest(state);
   for (int k = 0; k < parts; ++k) {
-    const Vec3 u = displacement / parts;
     assembly::WallStep step(state.model);
-    model::WallPose& pose = state.model.wall_poses[m];
-    carry(state, motion, pose.moved(0.5 * u, Vec3::Zero()), step.middle, step.middle_surfaces);
-    pose = pose.moved(u, Vec3::Zero());
-    carry(state, motion, pose, state.model.walls, state.model.surface_places);
-    step.side[static_cast<std::size_t>(wall)] = {u, Vec3::Zero()};
+    assembly::step_wall(state, m, {displacement / parts, Vec3::Zero()}, step);
     assembly::renew_list(state, state.list.skin);
     remember(state, rest, &step, nullptr);
   }

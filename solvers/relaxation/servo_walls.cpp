@@ -1,6 +1,6 @@
 #include "servo_walls.hpp"
 
-#include "eigengrain/assembly/moving_walls.hpp"
+#include "eigengrain/assembly/step_wall.hpp"
 #include "eigengrain/base/error.hpp"
 
 #include "equations.hpp"
@@ -59,23 +59,7 @@ class WallPlaces {
 
 /// Moves a wall by a way along the direction of its servo, and notes the step.
 void move_wall(State& state, std::size_t m, double way, WallStep& step) {
-  const model::WallMotion& motion = state.model.wall_motions[m];
-  const Vec3 u = way * motion.servo->direction;
-  model::WallPose& pose = state.model.wall_poses[m];
-  const auto w = static_cast<std::size_t>(motion.wall);
-  const auto carry = [&](const model::WallPose& to, std::vector<model::Plane>& planes,
-                         std::vector<contact::SurfacePlace>& surfaces) {
-    if (w < planes.size()) {
-      model::carry(state.settings.walls[w], motion, to, planes[w]);
-    } else {
-      surfaces[w - planes.size()].pose = to;
-      surfaces[w - planes.size()].moved = true;
-    }
-  };
-  carry(pose.moved(0.5 * u, Vec3::Zero()), step.middle, step.middle_surfaces);
-  pose = pose.moved(u, Vec3::Zero());
-  carry(pose, state.model.walls, state.model.surface_places);
-  step.side[w] = {u, Vec3::Zero()};
+  assembly::step_wall(state, m, {way * state.model.wall_motions[m].servo->direction, Vec3::Zero()}, step);
 }
 
 double dot(Vec x, Vec y) {

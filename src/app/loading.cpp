@@ -4,7 +4,7 @@
 #include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/base/error.hpp"
 #include "eigengrain/io/state_file.hpp"
-#include "eigengrain/measures/acting_contacts.hpp"
+#include "eigengrain/measures/measure.hpp"
 #include "eigengrain/petsc/session.hpp"
 #include "eigengrain/relaxation/prescribed.hpp"
 #include "eigengrain/relaxation/relax.hpp"
@@ -155,11 +155,10 @@ class LoadTable {
                                    result.end.mean_contact_force, assembly::energies_of(state).elastic);
     const model::PeriodicCell& cell = state.model.cell;
     if (cell.periodic[0] && cell.periodic[1] && cell.periodic[2]) {
-      Mat3 sum = Mat3::Zero();
-      for (const measures::ActingContact& c : measures::acting_contacts(state.model))
-        sum -= c.force * c.branch.transpose();
-      const Mat3 s = sum / cell.volume();
-      line += fmt::format(",{},{},{},{},{},{},{}", cell.volume(), s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2),
+      const std::vector<model::Region> all{{"all", {}}};
+      const measures::Measure of_all = measures::measure(state.model, all).front();
+      const Mat3& s = of_all.stress;
+      line += fmt::format(",{},{},{},{},{},{},{}", of_all.volume, s(0, 0), s(1, 1), s(2, 2), s(1, 2), s(0, 2),
                           s(0, 1));
     } else {
       line += ",,,,,,,";

@@ -1,6 +1,7 @@
 #include "eigengrain/assembly/balance.hpp"
 
 #include "eigengrain/assembly/acting.hpp"
+#include "eigengrain/assembly/body_size.hpp"
 #include "eigengrain/assembly/clump_members.hpp"
 #include "eigengrain/assembly/loads.hpp"
 
@@ -57,12 +58,6 @@ Survey survey(const Model& model) {
       if (const std::int32_t second = clumps.owner(pair.b); second != first) add(second);
   });
   return result;
-}
-
-/// The size that turns a moment into a force, m.
-double size_of(const model::Bodies& bodies, std::int32_t row) {
-  const std::int32_t clump = bodies.clumps.of(row);
-  return clump == model::Clumps::none ? bodies.radius[row] : bodies.clumps.radius[clump];
 }
 
 }  // namespace

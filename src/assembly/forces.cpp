@@ -10,6 +10,7 @@
 
 #include "flat.hpp"
 #include "force_kernel.hpp"
+#include "processor.hpp"
 
 #include <algorithm>
 #include <array>
@@ -130,7 +131,7 @@ extern const ForceKernel force_kernel_avx2;
 
 const ForceKernel& best_force_kernel() {
 #ifdef EIGENGRAIN_KERNEL_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return force_kernel_avx2;
+  if (runs_avx2_kernels()) return force_kernel_avx2;
 #endif
   return force_kernel_baseline;
 }

@@ -2,6 +2,7 @@
 
 #include "eigengrain/assembly/servo.hpp"
 #include "eigengrain/assembly/state.hpp"
+#include "eigengrain/assembly/step_wall.hpp"
 
 #include <algorithm>
 
@@ -36,20 +37,26 @@ void carry(const State& state, const model::WallMotion& motion, const model::Wal
 
 }  // namespace
 
+void step_wall(State& state, std::size_t motion, const contact::SideMotion& moved, WallStep& step) {
+  const model::WallMotion& of_wall = state.model.wall_motions[motion];
+  model::WallPose& pose = state.model.wall_poses[motion];
+  carry(state, of_wall, pose.moved(0.5 * moved.translation, 0.5 * moved.rotation), step.middle,
+        step.middle_surfaces);
+  pose = pose.moved(moved.translation, moved.rotation);
+  carry(state, of_wall, pose, state.model.walls, state.model.surface_places);
+  step.side[static_cast<std::size_t>(of_wall.wall)] = moved;
+}
+
 void WallStep::move(State& state, double dt) {
   Model& model = state.model;
   const std::vector<double> speeds = servo_speeds(model, dt);
   double farthest = 0;
   for (std::size_t m = 0; m < model.wall_motions.size(); ++m) {
     const model::WallMotion& motion = model.wall_motions[m];
-    model::WallPose& pose = model.wall_poses[m];
-    contact::SideMotion& moved = side[static_cast<std::size_t>(motion.wall)];
     model::WallVelocity velocity = motion.at(state.time + 0.5 * dt);
     if (motion.servo) velocity.translation += speeds[m] * motion.servo->direction;
-    moved = {dt * velocity.translation, dt * velocity.spin};
-    carry(state, motion, pose.moved(0.5 * moved.translation, 0.5 * moved.rotation), middle, middle_surfaces);
-    pose = pose.moved(moved.translation, moved.rotation);
-    carry(state, motion, pose, model.walls, model.surface_places);
+    const contact::SideMotion moved{dt * velocity.translation, dt * velocity.spin};
+    step_wall(state, m, moved, *this);
     farthest =
         std::max(farthest, moved.translation.norm() + moved.rotation.norm() * state.list.wall_lever[m]);
   }

@@ -4,6 +4,7 @@
 #include "eigengrain/base/parallel.hpp"
 #include "eigengrain/base/type_list.hpp"
 
+#include "processor.hpp"
 #include "product_records.hpp"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ extern const Kernel product_kernel_avx2;
 
 const Kernel& best_kernel() {
 #ifdef EIGENGRAIN_KERNEL_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return product_kernel_avx2;
+  if (runs_avx2_kernels()) return product_kernel_avx2;
 #endif
   return product_kernel_baseline;
 }

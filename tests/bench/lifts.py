@@ -9,25 +9,16 @@ mass that makes the step stable by the true limit, by weights of the bodies alon
 nothing lighter than it is) and alike for all (`uniform`), in percent of all, and how many bodies the first has.
 """
 import argparse
-import json
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-TREE = Path(__file__).resolve().parents[2]
+from ask import TREE, ask, packing
 
 
 def look_at(options, *more):
     with tempfile.TemporaryDirectory() as folder:
-        report = Path(folder) / "report.json"
-        command = [options.program, "timestep", str(TREE / f"examples/scenes/packing_{options.size}.yaml"),
-                   "--set", f"damping.local={options.damping:g}", "--json", str(report), *more]
-        print(" ".join(command), file=sys.stderr, flush=True)
-        done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
-        if done.returncode != 0:
-            sys.exit(done.stderr)
-        return json.loads(report.read_text())
+        return ask(options.program, "timestep", packing(options.size), folder,
+                   "--set", f"damping.local={options.damping:g}", *more)
 
 
 def main():

@@ -8,15 +8,13 @@ With local damping 0.7, and with dashpots instead (beta along n and across). Wri
 seconds of the cycle, medians over the repetitions, tracked over estimate, and the part of the time in which steps were proven.
 """
 import argparse
-import json
 import math
 import statistics
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-TREE = Path(__file__).resolve().parents[2]
+from ask import TREE, ask, packing
+
 DAMPINGS = {"local damping 0.7": []} | {
     f"dashpots {beta}": ["--set", "damping.local=0", "--set", f"contacts.0.beta_n={beta}", "--set",
                          f"contacts.0.beta_s={beta}"] for beta in ("0.05", "0.01")}
@@ -25,17 +23,10 @@ POLICIES = {"estimate": [], "tracked": ["--set", "timestep={policy: tracked}"]}
 
 def run(options, size, damping, policy, folder):
     tilt = math.radians(options.degrees)
-    report = folder / "run.json"
-    command = [options.program, "run", str(TREE / f"examples/scenes/packing_{size}.yaml"),
-               "--json", str(report), "--output", str(folder), "--threads", str(options.threads),
+    return ask(options.program, "run", packing(size), folder, "--output", str(folder), "--threads", str(options.threads),
                "--set", f"gravity=[{9.81 * math.sin(tilt):.17g}, 0, {-9.81 * math.cos(tilt):.17g}]",
                "--set", f"run={{steps: 1000000, until: {{unbalanced: {options.ratio:g}}}}}",
-               *DAMPINGS[damping], *POLICIES[policy]]
-    print(" ".join(command), file=sys.stderr, flush=True)
-    done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(done.stderr)
-    return json.loads(report.read_text())
+               *DAMPINGS[damping], *POLICIES[policy])
 
 
 def main():

@@ -1,5 +1,6 @@
 #include "eigengrain/base/text.hpp"
 
+#include "../relaxing.hpp"
 #include "../text.hpp"
 #include "relaxation_report.hpp"
 #include "report/chart.hpp"
@@ -23,8 +24,6 @@ using report::Mark;
 using report::number_text;
 using report::Page;
 
-constexpr double coarse = 1e-3;
-
 /// Below it nothing but rounding is seen.
 constexpr double least_drawn = 1e-16;
 
@@ -35,10 +34,6 @@ report::Look look_of(std::size_t method) {
       report::Look{Mark::diamond, green, true}, report::Look{Mark::triangle, purple, true},
       report::Look{Mark::cross, grey, false},   report::Look{Mark::circle, vermilion, false}};
   return looks[method % looks.size()];
-}
-
-double mean_of(const MethodRun& run) {
-  return std::max(run.result.end.mean, run.result.end.moment_mean);
 }
 
 /// Points of a course that show its shape: where something has changed by a tenth.
@@ -140,7 +135,7 @@ void add_table(const RelaxedScene& scene, Page& page) {
     row.push_back({grouped(run.result.explicit_steps + run.result.part_steps)});
     row.push_back({grouped(run.result.newton_iterations)});
     row.push_back({grouped(run.result.linear_iterations)});
-    row.push_back({number_text(mean_of(run)), run.result.converged ? Emphasis::good : Emphasis::bad});
+    row.push_back({number_text(mean_of(run.result)), run.result.converged ? Emphasis::good : Emphasis::bad});
     row.push_back(run.from_explicit ? Cell{number_text(run.from_explicit->forces)} : missing);
     row.push_back(run.from_explicit ? Cell{number_text(run.from_explicit->mean_distance)} : missing);
     table.rows.push_back(std::move(row));

@@ -15,6 +15,9 @@
 /// What `compare relaxation` finds out of scenes, and its three forms: text, JSON and a page.
 namespace eigengrain::app {
 
+/// The ratio that is coarse enough for a start of something else.
+inline constexpr double coarse = 1e-3;
+
 /// How far the bodies of a run were from where it ended.
 struct Distance {
   relaxation::Moment at;

@@ -1,5 +1,6 @@
 #include "eigengrain/base/text.hpp"
 
+#include "../relaxing.hpp"
 #include "../text.hpp"
 #include "relaxation_report.hpp"
 
@@ -13,12 +14,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using relaxation::Moment;
-
-constexpr double coarse = 1e-3;
-
-double mean_of(const MethodRun& run) {
-  return std::max(run.result.end.mean, run.result.end.moment_mean);
-}
 
 std::string seconds_text(const std::optional<Moment>& moment) {
   return moment ? fmt::format("{:.2g}", moment->seconds) : "-";
@@ -42,7 +37,7 @@ ordered_json json_of(const MethodRun& run) {
     return json;
   }
   json["converged"] = run.result.converged;
-  json["mean"] = mean_of(run);
+  json["mean"] = mean_of(run.result);
   json["floor"] = run.result.end.floor;
   json["unsupported"] = run.result.end.unsupported;
   json["steps"] = run.result.explicit_steps;
@@ -81,7 +76,7 @@ void print(const RelaxationReport& report) {
       fmt::print("{:>10} {:>9} {:>9} {:>10} {:>10} {:>9} {:>6} {:>8} {:>9.1e}  {}\n", run.name,
                  seconds_text(run.reaches(coarse)), seconds_text(end), sweeps_text(run.reaches(coarse)),
                  sweeps_text(end), grouped(run.result.explicit_steps + run.result.part_steps),
-                 run.result.newton_iterations, run.result.linear_iterations, mean_of(run),
+                 run.result.newton_iterations, run.result.linear_iterations, mean_of(run.result),
                  run.from_explicit ? fmt::format("{:.1e}", run.from_explicit->forces) : "-");
     }
     fmt::print("\n");

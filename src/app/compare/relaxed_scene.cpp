@@ -3,6 +3,7 @@
 
 #include "../input.hpp"
 #include "../interrupt.hpp"
+#include "../relaxing.hpp"
 #include "compared_scene.hpp"
 #include "relaxation_report.hpp"
 
@@ -91,12 +92,11 @@ void relax_all_ways(const Options& options, RelaxedScene& scene) {
     scene.runs.push_back(run_method(method, state, options));
     MethodRun& run = scene.runs.back();
     if (interrupted() != 0) throw Interrupted{interrupted()};
-    fmt::print(
-        stderr, "  {}: {}\n", run.name,
-        !run.failure.empty()
-            ? run.failure
-            : fmt::format("{} in {:.2g} s, ratio {:.1e}", run.result.converged ? "at rest" : "NOT at rest",
-                          run.result.seconds, std::max(run.result.end.mean, run.result.end.moment_mean)));
+    fmt::print(stderr, "  {}: {}\n", run.name,
+               !run.failure.empty() ? run.failure
+                                    : fmt::format("{} in {:.2g} s, ratio {:.1e}",
+                                                  run.result.converged ? "at rest" : "NOT at rest",
+                                                  run.result.seconds, mean_of(run.result)));
     if (!run.failure.empty() || !run.result.converged) continue;
     if (method == Method::explicit_cycle)
       explicit_end = std::move(state);
@@ -120,7 +120,7 @@ std::optional<Moment> MethodRun::reaches(double ratio) const {
 
 std::optional<Moment> MethodRun::reaches_end() const {
   if (!result.converged || result.course.empty()) return std::nullopt;
-  return reaches(std::max({result.course.back().mean, result.end.mean, result.end.moment_mean}));
+  return reaches(std::max(result.course.back().mean, mean_of(result)));
 }
 
 RelaxationReport compare_relaxations(const Options& options) {
