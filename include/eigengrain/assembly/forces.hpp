@@ -92,7 +92,7 @@ struct Candidate;
 /// residual. Threads share fixed chunks of bodies; a contact is evaluated once, in the chunk of its first
 /// body, and what it does to a body of another chunk is kept and added in the end. So every sum has one order
 /// (the order of the contacts), and the result is the same to the bit on any number of threads. Nothing is
-/// allocated after the first call. Cost O(contacts).
+/// allocated in a steady state. Cost O(contacts).
 class ContactForceSum {
  public:
   /// turns  whether moments are wanted
@@ -107,7 +107,8 @@ class ContactForceSum {
   /// The same, and the contacts remember: the trial displacement becomes the committed state. What they
   /// dissipate on the way is added to `dissipated` if it is given; if not, it is not computed. Contacts of
   /// balls are evaluated several at a time (src/assembly/force_kernel.hpp), so that forces agree with those
-  /// of evaluate() to rounding. Between two calls nobody else may change the states of contacts.
+  /// of evaluate() to rounding. Between two calls nobody else may change the states of contacts, nor
+  /// the edges of the cell but as the trial says.
   void advance(Model& model, const Trial& trial, BodyForces& sum, contact::Dissipation* dissipated = nullptr);
 
   /// Bonds that broke in the last `advance`, in the order of the contacts; steps, times and
