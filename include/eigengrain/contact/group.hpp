@@ -52,11 +52,15 @@ using AnyGroup = decltype(detail::all_groups(KinematicsTypes{}))::type;
 struct Contacts {
   std::vector<AnyGroup> groups;
 
-  std::int64_t size() const {
-    std::int64_t count = 0;
-    for_each_group([&](const auto& group) { count += group.size(); });
-    return count;
-  }
+  // Compiled once: each of them is a function for every kinematics with every law, in every file that has a model.
+  Contacts();
+  Contacts(const Contacts&);
+  Contacts(Contacts&&) noexcept;
+  Contacts& operator=(const Contacts&);
+  Contacts& operator=(Contacts&&) noexcept;
+  ~Contacts();
+
+  std::int64_t size() const;
 
   template <class Visitor>
   void for_each_group(const Visitor& visitor) const {
