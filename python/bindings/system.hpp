@@ -24,7 +24,7 @@ class Product {
  public:
   Product(std::shared_ptr<const System> system, bool scaled)
       : system_(std::move(system)),
-        product_(system_->system.unknowns, system_->system.elements,
+        product_(system_->system.unknowns, system_->system.parts(),
                  scaled ? system_->system.inverse_sqrt_mass() : std::vector<double>()) {}
 
   void apply(std::span<const double> x, std::span<double> y) {

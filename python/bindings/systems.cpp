@@ -129,11 +129,9 @@ void add_systems(py::module_& module) {
   system.def("elasticity",
              [](const SharedSystem& self) { return matrix_of(self, assembly::elasticity_blocks); });
   system.def("viscosity", [](const SharedSystem& self) {
-    if (self->system.damping.empty()) throw InputError("no contact of this state has dashpots");
+    if (!self->system.has_dashpots()) throw InputError("no contact of this state has dashpots");
     return matrix_of(self, [](const LinearSystem& of) {
-      LinearSystem viscous = of;
-      viscous.elements = assembly::viscous_elements(of);
-      return assembly::stiffness_blocks(viscous);
+      return assembly::stiffness_blocks(assembly::viscous_part(of));
     });
   });
   system.def_property_readonly("mass",

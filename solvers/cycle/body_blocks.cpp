@@ -135,6 +135,8 @@ BodyBlocks::BodyBlocks(const LinearSystem& system, std::span<const double> mass_
     if (e.b != no_body && !radial(e.lever_b, e.normal)) simple_[e.b] = 0;
   }
   ends_ = group_by_row(system.unknowns.bodies(), body_of_end);
+  for (std::size_t i = 0; i < system.nodal.bound.size(); ++i)
+    if (!system.nodal.bound[i].isZero(0)) simple_[i] = 0;
 }
 
 ContactStiffness BodyBlocks::stiffness(std::int32_t contact, double mu) const {
@@ -170,9 +172,16 @@ Mat6 BodyBlocks::scaled(std::int32_t body, const Mat6& block) const {
   return d * (s.asDiagonal() * system_.unknowns.in_own_axes(body, body, block) * s.asDiagonal());
 }
 
+Mat6 BodyBlocks::nodal(std::int32_t body, double mu) const {
+  if (system_.nodal.bound.empty()) return Mat6::Zero();
+  const auto i = static_cast<std::size_t>(body);
+  if (mu == 0 || system_.nodal.viscous_bound.empty()) return system_.nodal.bound[i];
+  return system_.nodal.bound[i] + mu * system_.nodal.viscous_bound[i];
+}
+
 Mat6 BodyBlocks::block(std::int32_t body, std::span<const double> weight, double mu) const {
-  return scaled(body, simple_[body] != 0 ? sum<RadialSum>(body, weight, mu).block()
-                                         : sum<FullSum>(body, weight, mu).block());
+  if (simple_[body] != 0) return scaled(body, sum<RadialSum>(body, weight, mu).block());
+  return scaled(body, sum<FullSum>(body, weight, mu).block() + nodal(body, mu));
 }
 
 BodyBlocks::Parts BodyBlocks::parts(std::int32_t body, std::span<const double> weight, double mu) const {
@@ -189,7 +198,7 @@ BodyBlocks::Parts BodyBlocks::parts(std::int32_t body, std::span<const double> w
     const std::int32_t j = other(end);
     if (j != no_body) others.add(element, lever(element, end), k, weight[j]);
   }
-  return {scaled(body, own.block()), scaled(body, others.block())};
+  return {scaled(body, own.block() + nodal(body, mu)), scaled(body, others.block())};
 }
 
 double BodyBlocks::energy(std::int32_t body, std::int32_t end, const Vec6& x, double mu) const {

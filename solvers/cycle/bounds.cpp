@@ -49,6 +49,9 @@ DiagonalEstimate elastic_diagonal_estimate(const LinearSystem& system) {
     if (element.b != no_body)
       stiffness[element.b] += diagonal(element.b, contact::end_block(element, element.lever_b));
   }
+  // Of elements of n nodes n times the diagonal, not four times: the rule of four is one for contacts of two.
+  for (std::size_t i = 0; i < system.nodal.bound.size(); ++i)
+    stiffness[i] += 0.25 * diagonal(static_cast<std::int32_t>(i), system.nodal.bound[i]);
   Vec6 largest = Vec6::Zero();
   for (std::size_t i = 0; i < stiffness.size(); ++i)
     largest = largest.cwiseMax(scale[i].cwiseAbs2().cwiseProduct(stiffness[i]));
@@ -58,7 +61,7 @@ DiagonalEstimate elastic_diagonal_estimate(const LinearSystem& system) {
 
 double diagonal_estimate(const LinearSystem& system) {
   const DiagonalEstimate parts =
-      elastic_diagonal_estimate(system.damping.empty() ? system : stiffened_by_dashpots(system));
+      elastic_diagonal_estimate(!system.has_dashpots() ? system : stiffened_by_dashpots(system));
   return std::min(parts.translation, parts.rotation);
 }
 

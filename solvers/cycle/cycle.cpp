@@ -30,8 +30,20 @@ using assembly::State;
 /// for thousands of steps.
 constexpr double skin_of_radius = 0.05;
 
-double mean_radius(const model::Bodies& bodies) {
-  return std::accumulate(bodies.radius.begin(), bodies.radius.end(), 0.0) / bodies.size();
+/// Of balls; where there are none, of what stands for them: an eighth of the edge of a cube of an element's volume.
+double mean_radius(const model::Scene& scene) {
+  const std::vector<double>& radius = scene.bodies.radius;
+  const auto balls = std::ssize(radius) - std::ranges::count(radius, 0.0);
+  if (balls > 0) return std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(balls);
+  double mass = 0;
+  double elements = 0;
+  double density = 1;
+  for (const model::Deformable& deformable : scene.deformables) {
+    density = deformable.density;
+    elements += deformable.mesh.element_count();
+  }
+  for (const double m : scene.bodies.mass) mass += m;
+  return elements > 0 ? std::cbrt(mass / density / elements) / 8 : 0.0;
 }
 
 /// What bodies do to the walls in a step, by the trapezoidal rule, J.
@@ -59,7 +71,7 @@ State start(const model::Scene& scene) {
   State state;
   state.settings = scene;
   state.settings.bodies = {};
-  state.list.skin = skin_of_radius * mean_radius(scene.bodies);
+  state.list.skin = skin_of_radius * mean_radius(scene);
   state.model = assembly::build_model(scene, state.list.skin);
   model::Bodies& bodies = state.model.bodies;
   const auto count = static_cast<std::size_t>(bodies.size());

@@ -49,7 +49,7 @@ class Lifting {
           double wished)
       : blocks_(system, divisor),
         mass_(mass),
-        mu_(system.damping.empty() ? 0 : 2 / wished),
+        mu_(!system.has_dashpots() ? 0 : 2 / wished),
         sigma_(4 / (wished * wished)),
         flow_(2 * system.elements.size(), 0.0) {}
 

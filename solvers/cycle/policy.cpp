@@ -28,7 +28,7 @@ double estimate(const assembly::State& state) {
 /// triangles.
 std::int64_t between_bounds(const model::Scene& settings, bool varies) {
   if (varies) return steps_between_varying;
-  return settings.surfaces.empty() ? 0 : steps_between_estimates;
+  return settings.surfaces.empty() && settings.deformables.empty() ? 0 : steps_between_estimates;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ TimestepPolicy policy_of(const model::Scene& settings) {
   const bool varies = stiffness_varies(settings);
   // Elsewhere no guard can be had (tracked_step.hpp).
   const bool tracks = choice.policy == model::TimestepPolicy::tracked && settings.surfaces.empty() &&
-                      !settings.cell.deforms();
+                      settings.deformables.empty() && !settings.cell.deforms();
   const std::int64_t between_proofs = choice.every > 0 ? choice.every : steps_between_proofs;
   if (tracks && settings.mass_scaling && settings.mass_scaling->form == model::MassScaling::Form::selective)
     return {.dt = [dt = settings.mass_scaling->dt](const assembly::State&) { return dt; },

@@ -59,7 +59,7 @@ void StepProver::set_weights(std::vector<double> weights) {
 }
 
 double StepProver::viscous(double mu) const {
-  return system_.damping.empty() ? 0 : mu;
+  return !system_.has_dashpots() ? 0 : mu;
 }
 
 void StepProver::look_at_all(double mu) {
@@ -68,7 +68,7 @@ void StepProver::look_at_all(double mu) {
                for (auto body = static_cast<std::int32_t>(begin); body < end; ++body)
                  ceiling_[body] = blocks_->bound(body, weight_, viscous(mu));
              });
-  ceiling_mu_ = system_.damping.empty() ? std::numeric_limits<double>::infinity() : mu;
+  ceiling_mu_ = !system_.has_dashpots() ? std::numeric_limits<double>::infinity() : mu;
   looked_at_ += std::ssize(weight_);
 }
 
@@ -80,7 +80,7 @@ double StepProver::largest(double mu) {
 double StepProver::bound() {
   double mu = std::sqrt(largest(0));
   if (!(mu > 0)) return std::isnan(mu) ? 0.0 : std::numeric_limits<double>::infinity();
-  if (system_.damping.empty()) return 2 / mu;
+  if (!system_.has_dashpots()) return 2 / mu;
   // The root of μ² = λ(μ), λ(μ) convex and rising: with λ beyond the last two points as a straight line
   // through them the root comes out too small, so this rises to it, and the last little is put on top.
   constexpr double content = 1e-12;
@@ -110,7 +110,7 @@ bool StepProver::holds(std::int32_t body, double mu) {
   const double sigma = mu * mu;
   ++looked_at_;
   // What is found here holds up to this μ only.
-  if (!system_.damping.empty()) ceiling_mu_ = std::min(ceiling_mu_, mu);
+  if (system_.has_dashpots()) ceiling_mu_ = std::min(ceiling_mu_, mu);
   ceiling_[body] = blocks_->bound(body, weight_, viscous(mu));
   if (ceiling_[body] <= sigma) return true;
   if (!below(blocks_->block(body, weight_, viscous(mu)), sigma, blocks_->rounding(body))) return false;
@@ -202,7 +202,7 @@ void StepProver::set_damping(std::int32_t body, double local_damping) {
 
 void StepProver::update(std::span<const std::int32_t> contacts) {
   if (ceiling_mu_ < 0) return;  // nothing is known anyway
-  const double mu = system_.damping.empty() ? 0 : ceiling_mu_;
+  const double mu = !system_.has_dashpots() ? 0 : ceiling_mu_;
   const auto renew = [&](std::int32_t body) {
     if (body == no_body) return;
     ++looked_at_;

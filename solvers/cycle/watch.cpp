@@ -1,5 +1,6 @@
 #include "eigengrain/cycle/watch.hpp"
 
+#include "eigengrain/assembly/body_size.hpp"
 #include "eigengrain/assembly/cell_motion.hpp"
 #include "eigengrain/assembly/energies.hpp"
 #include "eigengrain/assembly/loads.hpp"
@@ -65,7 +66,7 @@ std::optional<Trouble> too_fast(const State& state) {
   const double strain = state.model.cell.flow_gradient().norm() * state.dt;
   for (std::size_t i = 0; i < bodies.position.size(); ++i) {
     const Vec3 velocity = fluctuation.of(bodies.velocity[i], bodies.position[i]);
-    const double way = velocity.norm() * state.dt / bodies.radius[i] + strain;
+    const double way = velocity.norm() * state.dt / assembly::size_of(bodies, static_cast<std::int32_t>(i)) + strain;
     if (way > largest_way) bad.add(way, bodies.identity[i]);
   }
   if (bad.empty()) return std::nullopt;
@@ -80,7 +81,7 @@ std::optional<Trouble> too_deep(const State& state) {
   state.model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     for (const contact::Pair& pair : group.pairs) {
-      double radius = bodies.radius[pair.a];
+      double radius = bodies.radius[pair.a] > 0 ? bodies.radius[pair.a] : assembly::size_of(bodies, pair.a);
       if constexpr (Kinematics::second_is_body) radius = std::min(radius, bodies.radius[pair.b]);
       const double depth = Kinematics::geometry(placement, pair).overlap / radius;
       if (!(depth > largest_overlap)) continue;

@@ -17,14 +17,18 @@ struct BlockPattern {
   std::vector<PetscInt> columns;
 };
 
-BlockPattern block_pattern(const Unknowns& unknowns, std::span<const contact::ContactElement> elements) {
+BlockPattern block_pattern(const Unknowns& unknowns, const assembly::StiffnessParts& parts) {
   std::vector<std::vector<PetscInt>> rows(static_cast<std::size_t>(unknowns.blocks()));
   const auto couple = [&](std::int32_t row_body, std::int32_t column_body) {
     for (const std::int32_t row : unknowns.of(row_body))
       for (const std::int32_t column : unknowns.of(column_body))
         if (row != Unknowns::none && column != Unknowns::none) rows[row].push_back(column);
   };
-  for (const contact::ContactElement& e : elements) {
+  if (parts.nodal != nullptr)
+    assembly::for_each_block(parts.nodal->k, [&](std::int32_t row, std::int32_t column, const Mat3&) {
+      rows[static_cast<std::size_t>(row)].push_back(column);
+    });
+  for (const contact::ContactElement& e : parts.contacts) {
     couple(e.a, e.a);
     if (e.b == contact::no_body) continue;
     couple(e.b, e.b);
@@ -44,14 +48,14 @@ BlockPattern block_pattern(const Unknowns& unknowns, std::span<const contact::Co
 
 }  // namespace
 
-StiffnessMatrix::StiffnessMatrix(const Unknowns& unknowns, std::span<const contact::ContactElement> elements)
+StiffnessMatrix::StiffnessMatrix(const Unknowns& unknowns, const assembly::StiffnessParts& parts)
     : unknowns_(&unknowns) {
   start();
   const auto size = static_cast<PetscInt>(unknowns.size());
   EIGENGRAIN_PETSC(MatCreate(PETSC_COMM_SELF, matrix_.put()));
   EIGENGRAIN_PETSC(MatSetSizes(mat(), size, size, size, size));
   EIGENGRAIN_PETSC(MatSetType(mat(), MATSEQBAIJ));
-  const BlockPattern pattern = block_pattern(unknowns, elements);
+  const BlockPattern pattern = block_pattern(unknowns, parts);
   EIGENGRAIN_PETSC(MatSeqBAIJSetPreallocationCSR(mat(), Unknowns::block_size, pattern.offsets.data(),
                                                  pattern.columns.data(), nullptr));
   // A contact outside of the pattern is a mistake of ours, never a reason to allocate.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/stiffness_parts.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 #include "eigengrain/contact/element.hpp"
 
@@ -19,20 +20,20 @@ namespace eigengrain::petsc {
 /// may be repeated as often as stiffnesses change, without any allocation. It refers to the unknowns given.
 class StiffnessMatrix {
  public:
-  /// elements: the contacts whose ends make the pattern; their stiffness is not read.
-  StiffnessMatrix(const assembly::Unknowns& unknowns, std::span<const contact::ContactElement> elements);
+  /// parts: the contacts whose ends make the pattern, and the blocks of nodes; their stiffness is not read.
+  StiffnessMatrix(const assembly::Unknowns& unknowns, const assembly::StiffnessParts& parts);
 
   void begin();
   void add(const contact::ContactElement& element);
   /// The 12×12 of a contact on (u_a, θ_a, u_b, θ_b); at a wall (b = contact::no_body) the first 6×6 of it.
   void add(std::int32_t a, std::int32_t b, const Mat12& k);
+  /// A block of the pattern.
+  void add_block(std::int32_t row, std::int32_t column, const Mat3& block);
   void end();
 
   Mat mat() const { return matrix_.get(); }
 
  private:
-  void add_block(std::int32_t row, std::int32_t column, const Mat3& block);
-
   const assembly::Unknowns* unknowns_;
   Matrix matrix_;
 };

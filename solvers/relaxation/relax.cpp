@@ -310,7 +310,8 @@ class Relaxation {
 
   /// The ratio of all others where a few bodies are what keeps the state from coming to rest.
   std::optional<double> few_move(const State& state) const {
-    if (result_.explicit_steps < no_parts_before_) return std::nullopt;
+    // A part of a deformable body is none.
+    if (result_.explicit_steps < no_parts_before_ || !state.model.solids.empty()) return std::nullopt;
     for (const double level : quiet_levels) {
       const Movers movers = movers_of(state, moving_force(level));
       const bool quiet =

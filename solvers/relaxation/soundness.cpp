@@ -92,14 +92,20 @@ std::vector<Floating> floating_groups(const State& state) {
   const model::Bodies& bodies = state.model.bodies;
   Groups groups(bodies.size());
   std::vector<char> at_wall(static_cast<std::size_t>(bodies.size()), 0);
+  const contact::Placement placement = state.model.placement();
   assembly::for_each_acting(state.model, [&](const auto& group, std::size_t c, const auto& /*geometry*/) {
     const contact::Pair& pair = group.pairs[c];
     const std::int32_t a = bodies.clumps.owner(pair.a);
-    if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body)
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    if constexpr (Kinematics::second_is_body)
       groups.join(a, bodies.clumps.owner(pair.b));
+    else if (contact::on_skin<Kinematics>(placement, pair))
+      groups.join(a, contact::skin_point(placement, pair).body[0]);
     else
       at_wall[a] = 1;
   });
+  for (const auto& solid : state.model.solids)
+    for (const std::int32_t row : solid->row) groups.join(solid->row.front(), row);
   std::vector<Hold> holds(static_cast<std::size_t>(bodies.size()));
   for_each_body(bodies, [&](std::int32_t row) {
     Hold& hold = holds[groups.of(row)];

@@ -133,7 +133,7 @@ Density density_of_states(const assembly::LinearSystem& system, const DensityOpt
   result.resolution = 0.5 * std::sqrt(bound) * pi / options.moments;
   const std::vector<double> t = angles(result.edge, bound);
 
-  StiffnessProduct product(system.unknowns, system.elements, scale);
+  StiffnessProduct product(system.unknowns, system.parts(), scale);
   std::mt19937_64 random(options.seed);
   const auto bins = static_cast<std::size_t>(options.bins);
   std::vector<double> sum(bins, 0.0);

@@ -35,7 +35,7 @@ Modes with_residuals(const LinearSystem& system, const Eigen::VectorXd& lambda,
   Modes result;
   const std::vector<double> scale = system.inverse_sqrt_mass();
   const std::vector<std::int32_t> free = system.unknowns.free_components();
-  StiffnessProduct product(system.unknowns, system.elements, scale);
+  StiffnessProduct product(system.unknowns, system.parts(), scale);
   const double largest = lambda.size() > 0 ? lambda[lambda.size() - 1] : 0.0;
   std::vector<double> y(scale.size());
   std::vector<double> image(scale.size());
@@ -64,7 +64,7 @@ Modes highest_modes(const LinearSystem& system, int count, const timestep::Truth
   if (system.unknowns.free_components().empty()) return result;
   petsc::start();
   const std::vector<double> scale = system.inverse_sqrt_mass();
-  StiffnessProduct product(system.unknowns, system.elements, scale);
+  StiffnessProduct product(system.unknowns, system.parts(), scale);
   for (const timestep::Eigenpair& pair : timestep::largest_eigenpairs(product, scale, count, options)) {
     result.lambda.push_back(pair.value);
     result.residual.push_back(pair.residual);

@@ -86,7 +86,7 @@ PetscErrorCode precondition(PC pc, Vec x, Vec y) {
 class Response {
  public:
   Response(const LinearSystem& system, std::span<const double> scale, double largest)
-      : product_(system.unknowns, system.elements, scale), shell_(product_) {
+      : product_(system.unknowns, system.parts(), scale), shell_(product_) {
     EIGENGRAIN_PETSC(KSPCreate(PETSC_COMM_SELF, solver_.put()));
     EIGENGRAIN_PETSC(KSPSetOperators(solver_.get(), shell_.mat(), shell_.mat()));
     EIGENGRAIN_PETSC(KSPSetType(solver_.get(), KSPCG));
@@ -101,7 +101,7 @@ class Response {
     }
     factor_ = std::make_unique<SparseFactor>();
     const timestep::SparseMatrix matrix =
-        timestep::shifted_stiffness(system.unknowns, system.elements, scale, shift * largest, 1);
+        timestep::shifted_stiffness(system.unknowns, system.parts(), scale, shift * largest, 1);
     factor_->analyzePattern(matrix);
     timestep::require_memory(factor_->numbers(), timestep::available_memory(), "the elastic response",
                              "ask for a scene of fewer bodies");

@@ -22,14 +22,19 @@ using contact::ContactElement;
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
 
 /// Contacts of the body that has most of them.
-double most_contacts(const Unknowns& unknowns, std::span<const ContactElement> elements) {
+double most_contacts(const Unknowns& unknowns, const assembly::StiffnessParts& parts) {
   std::vector<std::int32_t> count(static_cast<std::size_t>(unknowns.bodies()), 0);
   std::int32_t most = 0;
-  for (const ContactElement& e : elements) {
+  for (const ContactElement& e : parts.contacts) {
     most = std::max(most, ++count[static_cast<std::size_t>(e.a)]);
     if (e.b != contact::no_body) most = std::max(most, ++count[static_cast<std::size_t>(e.b)]);
   }
-  return most;
+  if (parts.nodal == nullptr) return most;
+  // A block of a row is met once in the sum of its elements; a row has no more of these than blocks.
+  const std::vector<std::int32_t>& offsets = parts.nodal->k.offsets;
+  std::int32_t longest = 0;
+  for (std::size_t row = 1; row < offsets.size(); ++row) longest = std::max(longest, offsets[row] - offsets[row - 1]);
+  return most + 4 * longest;  // a tetrahedron has four integration points at most, a brick twice as many as nodes share
 }
 
 /// What the entries of S K S may have lost of its eigenvalues. Each is a sum over c contacts of products of
@@ -41,9 +46,9 @@ double lost_in_entries(double contacts, double largest_diagonal) {
 
 }  // namespace
 
-std::optional<double> prove_below(const Unknowns& unknowns, std::span<const ContactElement> elements,
+std::optional<double> prove_below(const Unknowns& unknowns, const assembly::StiffnessParts& parts,
                                   std::span<const double> scale, double sigma) {
-  const SparseMatrix matrix = shifted_stiffness(unknowns, elements, scale, sigma, -1);
+  const SparseMatrix matrix = shifted_stiffness(unknowns, parts, scale, sigma, -1);
   const Eigen::VectorXd diagonal = matrix.diagonal();
   // A diagonal entry that is not positive is an eigenvalue above sigma.
   if (!(diagonal.minCoeff() > 0)) return std::nullopt;
@@ -64,7 +69,7 @@ std::optional<double> prove_below(const Unknowns& unknowns, std::span<const Cont
   const double terms = (factor.longest_row() + 2) * unit_roundoff;
   const double gamma = terms / (1 - terms);
   return sigma + gamma / (1 - gamma) * diagonal.sum() +
-         lost_in_entries(most_contacts(unknowns, elements), sigma);
+         lost_in_entries(most_contacts(unknowns, parts), sigma);
 }
 
 }  // namespace eigengrain::timestep

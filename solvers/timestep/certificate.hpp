@@ -22,7 +22,7 @@ namespace eigengrain::timestep {
 /// Throws SolverError where the factor does not fit into the memory that is free; it is asked before it is
 /// taken.
 std::optional<double> prove_below(const assembly::Unknowns& unknowns,
-                                  std::span<const contact::ContactElement> elements,
+                                  const assembly::StiffnessParts& parts,
                                   std::span<const double> scale, double sigma);
 
 }  // namespace eigengrain::timestep

@@ -10,6 +10,10 @@ namespace eigengrain::timestep {
 namespace {
 
 void judge(const Estimator& estimator, const Question& question, Comparison& result) {
+  if (!question.system.nodal.empty() && !estimator.knows_nodes) {
+    result.left_out.push_back({std::string(estimator.name), "it knows contacts alone, and the scene has deformable bodies"});
+    return;
+  }
   const Stopwatch watch;
   const Answer answer = estimator.find(question);
   const double seconds = watch.seconds();

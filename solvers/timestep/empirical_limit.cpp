@@ -47,7 +47,7 @@ class Experiment {
         system_(rest_.model),
         motion_(system_),
         start_(start(system_, truth)),
-        steps_(system_.damping.empty() ? steps_undamped : steps_with_dashpots) {
+        steps_(!system_.has_dashpots() ? steps_undamped : steps_with_dashpots) {
     const std::vector<double>& radius = rest_.model.bodies.radius;
     way_ = options.amplitude * *std::min_element(radius.begin(), radius.end());
     limit_.reservations = reservations_about(rest_);

@@ -115,7 +115,7 @@ LimitingMode describe(const LinearSystem& system, std::span<const CarryingContac
 
 double critical_step(const LinearSystem& system, const TruthOptions& options) {
   const std::vector<double> scale = system.inverse_sqrt_mass();
-  assembly::StiffnessProduct product(system.unknowns, system.elements, scale);
+  assembly::StiffnessProduct product(system.unknowns, system.parts(), scale);
   const double lambda = largest_eigenpairs(product, scale, 1, options).front().value;
   return lambda > 0 ? 2 / std::sqrt(lambda) : std::numeric_limits<double>::infinity();
 }
@@ -150,7 +150,7 @@ LimitingModes limiting_modes(const assembly::Model& model, int count, const Trut
   petsc::start();
   const Stopwatch watch;
   const std::vector<CarryingContact> contacts = sides_of_contacts(model);
-  assembly::StiffnessProduct product(system.unknowns, system.elements, scale);
+  assembly::StiffnessProduct product(system.unknowns, system.parts(), scale);
   for (const Eigenpair& pair : largest_eigenpairs(product, scale, count, options)) {
     if (!(pair.value > 0)) break;
     LimitingMode mode = describe(system, contacts, mode_of(pair.vector.get(), scale));

@@ -38,8 +38,8 @@ constexpr int most_restarts = 200;
 class SlowFirst {
  public:
   SlowFirst(const LinearSystem& system, std::span<const double> scale, double sigma)
-      : product_(system.unknowns, system.elements, scale) {
-    const SparseMatrix matrix = shifted_stiffness(system.unknowns, system.elements, scale, sigma, 1);
+      : product_(system.unknowns, system.parts(), scale) {
+    const SparseMatrix matrix = shifted_stiffness(system.unknowns, system.parts(), scale, sigma, 1);
     factor_.analyzePattern(matrix);
     require_memory(factor_.numbers(), available_memory(), "the slowest modes",
                    "ask for a scene of fewer bodies");

@@ -92,10 +92,10 @@ class Lifter {
   /// (λ(μ)/μ² - 1) Σ m, λ(μ) the largest eigenvalue of M'⁻¹(K + μC).
   double uniform(double wished, double mass) const {
     const double mu = 2 / wished;
-    const LinearSystem whole = system_.damping.empty() ? system_ : assembly::with_viscosity(system_, mu);
+    const LinearSystem whole = !system_.has_dashpots() ? system_ : assembly::with_viscosity(system_, mu);
     std::vector<double> scale = system_.inverse_sqrt_mass();
     for (std::size_t k = 0; k < scale.size(); ++k) scale[k] *= std::sqrt(1 + alpha_of_unknowns_[k]);
-    assembly::StiffnessProduct product(whole.unknowns, whole.elements, scale);
+    assembly::StiffnessProduct product(whole.unknowns, whole.parts(), scale);
     const double lambda = largest_eigenpairs(product, scale, 1, options_).front().value;
     return std::max(0.0, lambda / (mu * mu) - 1) * mass;
   }

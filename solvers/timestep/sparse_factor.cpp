@@ -11,24 +11,24 @@ namespace eigengrain::timestep {
 using assembly::Unknowns;
 using contact::ContactElement;
 
-SparseMatrix shifted_stiffness(const Unknowns& unknowns, std::span<const ContactElement> elements,
-                               std::span<const double> scale, double shift, double factor) {
+SparseMatrix shifted_stiffness(const Unknowns& unknowns, const assembly::StiffnessParts& parts, std::span<const double> scale, double shift, double factor) {
   std::vector<Eigen::Triplet<double, SuiteSparse_long>> entries;
-  entries.reserve(elements.size() * 78 + scale.size());
+  entries.reserve(parts.contacts.size() * 78 + scale.size());
   for (std::size_t k = 0; k < scale.size(); ++k) entries.emplace_back(k, k, shift);
-  for (const ContactElement& element : elements)
-    assembly::scatter(element, unknowns, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
-      if (row < column) return;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          const std::int64_t r = std::int64_t{3} * row + i;
-          const std::int64_t c = std::int64_t{3} * column + j;
-          if (r >= c)
-            entries.emplace_back(r, c,
-                                 factor * scale[static_cast<std::size_t>(r)] * block(i, j) *
-                                     scale[static_cast<std::size_t>(c)]);
-        }
-    });
+  const auto add = [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+    if (row < column) return;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const std::int64_t r = std::int64_t{3} * row + i;
+        const std::int64_t c = std::int64_t{3} * column + j;
+        if (r >= c)
+          entries.emplace_back(r, c,
+                               factor * scale[static_cast<std::size_t>(r)] * block(i, j) *
+                                   scale[static_cast<std::size_t>(c)]);
+      }
+  };
+  for (const ContactElement& element : parts.contacts) assembly::scatter(element, unknowns, add);
+  if (parts.nodal != nullptr) assembly::for_each_block(parts.nodal->k, add);
   SparseMatrix matrix(unknowns.size(), unknowns.size());
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "eigengrain/assembly/stiffness_parts.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
-#include "eigengrain/contact/element.hpp"
 
 #include <Eigen/CholmodSupport>
 #include <Eigen/SparseCore>
@@ -17,8 +17,8 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_lo
 ///
 /// scale  [unknowns.size()] the diagonal of S
 SparseMatrix shifted_stiffness(const assembly::Unknowns& unknowns,
-                               std::span<const contact::ContactElement> elements,
-                               std::span<const double> scale, double shift, double factor);
+                               const assembly::StiffnessParts& parts, std::span<const double> scale,
+                               double shift, double factor);
 
 /// A supernodal factor whose size is known before it is computed.
 class SparseFactor : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {

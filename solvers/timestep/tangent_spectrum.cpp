@@ -41,13 +41,15 @@ petsc::Matrix scaled(const petsc::StiffnessMatrix& blocks, const assembly::Linea
 /// S T S of a model.
 petsc::Matrix scaled_tangent(const assembly::Model& model, const assembly::LinearSystem& system,
                              assembly::Slip slip) {
-  petsc::StiffnessMatrix blocks(system.unknowns, system.elements);
+  petsc::StiffnessMatrix blocks(system.unknowns, system.parts());
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   const std::vector<Vec3> still(bodies, Vec3::Zero());
   blocks.begin();
-  assembly::assemble_tangent(
-      model, assembly::Trial{model.bodies.position, still, still, 1.0, model.bodies.orientation}, blocks,
-      slip);
+  const assembly::Trial trial{model.bodies.position, still, still, 1.0, model.bodies.orientation};
+  assembly::assemble_tangent(model, trial, blocks, slip);
+  assembly::for_each_nodal_tangent(
+      model, trial, system.unknowns,
+      [&](std::int32_t row, std::int32_t column, const Mat3& block) { blocks.add_block(row, column, block); });
   blocks.end();
   return scaled(blocks, system);
 }
@@ -117,9 +119,12 @@ SpectrumEnds ends_of(Mat matrix) {
 
 /// K itself through the same door.
 petsc::Matrix scaled_stiffness(const assembly::LinearSystem& system) {
-  petsc::StiffnessMatrix blocks(system.unknowns, system.elements);
+  petsc::StiffnessMatrix blocks(system.unknowns, system.parts());
   blocks.begin();
   for (const contact::ContactElement& e : system.elements) blocks.add(e);
+  assembly::for_each_block(system.nodal.k, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+    blocks.add_block(row, column, block);
+  });
   blocks.end();
   return scaled(blocks, system);
 }

@@ -55,17 +55,14 @@ struct Problem {
   /// What proves steps without the whole system.
   cycle::StepProver prover() const { return cycle::StepProver(system, largest_damping); }
 
-  std::vector<contact::ContactElement> elements(double mu) const {
-    return dashpots ? assembly::with_viscosity(system, mu).elements : system.elements;
-  }
 };
 
 Found search(const Problem& problem, const TruthOptions& options) {
   Found found;
-  StiffnessProduct stiffness(problem.system.unknowns, problem.system.elements, problem.scale);
+  StiffnessProduct stiffness(problem.system.unknowns, problem.system.parts(), problem.scale);
   if (problem.dashpots) {
-    StiffnessProduct viscosity(problem.system.unknowns, assembly::viscous_elements(problem.system),
-                               problem.scale);
+    const assembly::LinearSystem viscous = assembly::viscous_part(problem.system);
+    StiffnessProduct viscosity(viscous.unknowns, viscous.parts(), problem.scale);
     const Eigenpair pair = largest_quadratic_eigenpair(stiffness, viscosity, problem.scale,
                                                        2 / problem.prover().bound(), options);
     found.rate = pair.value * pair.value;
@@ -94,7 +91,10 @@ bool prove(const Problem& problem, Found& found) {
       return true;
     }
   const double mu = std::sqrt(wanted);
-  const auto sigma = prove_below(problem.system.unknowns, problem.elements(mu), problem.scale, wanted);
+  const auto below = [&](const assembly::LinearSystem& of) {
+    return prove_below(of.unknowns, of.parts(), problem.scale, wanted);
+  };
+  const auto sigma = problem.dashpots ? below(assembly::with_viscosity(problem.system, mu)) : below(problem.system);
   if (!sigma) return false;
   // λ(μ), the largest eigenvalue of A(μ), is less than σ. At μ' = σ/μ it is less than μ'²: with K >= 0
   // A(μ') <= (μ'/μ) A(μ).
@@ -176,7 +176,7 @@ Truth critical_timestep(const LinearSystem& system, std::span<const double> loca
 
   double alpha = 0;
   const bool alike = all_alike(local_damping, scale, alpha);
-  if (alike && system.damping.empty()) {
+  if (alike && !system.has_dashpots()) {
     truth.limit = cycle::damped_timestep(truth.dt, alpha);
     truth.limit_residual = truth.residual;
     truth.limit_mode = truth.mode;
@@ -188,7 +188,7 @@ Truth critical_timestep(const LinearSystem& system, std::span<const double> loca
     Found damped = solve({.system = system,
                           .scale = damped_scale(scale, local_damping),
                           .largest_damping = *std::ranges::max_element(local_damping),
-                          .dashpots = !system.damping.empty()},
+                          .dashpots = system.has_dashpots()},
                          options);
     truth.limit = damped.dt;
     truth.limit_residual = damped.residual;

@@ -57,7 +57,9 @@ RunOutputs::RunOutputs(Input& input)
       std::any_of(rules.begin(), rules.end(), [](const auto& rule) { return rule.bond.has_value(); });
   if (choice_.series_every > 0) {
     series_.emplace_back(input.folder, input.stem, io::Series::Of::balls, choice_.series_stress);
-    if (!input.state.model.surfaces.empty())
+    if (!input.state.model.solids.empty())
+      series_.emplace_back(input.folder, input.stem + "_solids", io::Series::Of::solids);
+    if (!input.state.settings.surfaces.empty())
       series_.emplace_back(input.folder, input.stem + "_walls", io::Series::Of::surfaces);
     if (bonds) series_.emplace_back(input.folder, input.stem + "_breaks", io::Series::Of::breaks);
     for (io::Series& series : series_)

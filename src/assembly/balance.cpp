@@ -6,6 +6,7 @@
 #include "eigengrain/assembly/loads.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -34,6 +35,34 @@ double rounding_along(const Vec3& n, const Vec3& x) {
   return n.cwiseProduct(Vec3(x.unaryExpr(ulp))).squaredNorm() / 12;
 }
 
+/// Elements of deformable bodies as far as balance goes: what an element does to a node is a contact force.
+void add_elements(const Model& model, Survey& result) {
+  std::array<Vec3, fem::most_nodes> x;
+  std::array<Vec3, fem::most_nodes> force;
+  for (const auto& solid : model.solids) {
+    const auto n = static_cast<std::size_t>(solid->elements.nodes());
+    const double modulus = solid->deformable.solid.lame() + 2 * solid->deformable.solid.shear();
+    for (std::int32_t e = 0; e < solid->elements.size(); ++e) {
+      solid->gather(e, model.bodies.position, x);
+      solid->elements.forces(solid->deformable.solid, e, std::span(x).first(n), std::span(force).first(n));
+      const std::span<const double> gradient = solid->elements.gradients(e, 0);
+      double weight = 0;
+      for (int q = 0; q < solid->elements.points(); ++q) weight += solid->elements.weight(e, q);
+      for (std::size_t i = 0; i < n; ++i) {
+        Touch& touch = result.touch[static_cast<std::size_t>(solid->rows[n * static_cast<std::size_t>(e) + i])];
+        result.force += force[i].norm();
+        ++touch.contacts;
+        for (std::size_t j = 0; j < n; ++j) {
+          const Vec3 of_i = Eigen::Map<const Vec3>(&gradient[3 * i]);
+          const Vec3 of_j = Eigen::Map<const Vec3>(&gradient[3 * j]);
+          touch.rounding += std::pow(weight * modulus * of_i.norm(), 2) * rounding_along(of_j, x[j]);
+        }
+      }
+    }
+    result.contacts += std::ssize(solid->rows);
+  }
+}
+
 Survey survey(const Model& model) {
   Survey result{std::vector<Touch>(static_cast<std::size_t>(model.bodies.size())), 0, 0.0};
   const contact::Placement placement = model.placement();
@@ -57,6 +86,7 @@ Survey survey(const Model& model) {
     if constexpr (Kinematics::second_is_body)
       if (const std::int32_t second = clumps.owner(pair.b); second != first) add(second);
   });
+  add_elements(model, result);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include "eigengrain/assembly/block_matrix.hpp"
 
 #include "eigengrain/assembly/scatter.hpp"
+#include "eigengrain/base/error.hpp"
 
 #include <Eigen/Core>
 
@@ -20,28 +21,10 @@ Eigen::Map<RowMajor3> block_at(BlockMatrix& matrix, std::size_t index) {
   return Eigen::Map<RowMajor3>(matrix.values.data() + block_numbers * index);
 }
 
-/// Rows given as lists of columns, with repetitions; values are zero.
-BlockMatrix with_pattern(std::vector<std::vector<std::int32_t>> rows, std::int32_t columns) {
-  BlockMatrix matrix;
-  matrix.block_rows = static_cast<std::int32_t>(rows.size());
-  matrix.block_columns = columns;
-  matrix.offsets.reserve(rows.size() + 1);
-  for (std::vector<std::int32_t>& row : rows) {
-    std::ranges::sort(row);
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    matrix.columns.insert(matrix.columns.end(), row.begin(), row.end());
-    matrix.offsets.push_back(static_cast<std::int32_t>(matrix.columns.size()));
-    row = {};
-  }
-  matrix.values.assign(block_numbers * matrix.columns.size(), 0.0);
-  return matrix;
-}
-
-void add_to(BlockMatrix& matrix, std::int32_t row, std::int32_t column, const Mat3& block) {
-  const auto begin = matrix.columns.begin() + matrix.offsets[static_cast<std::size_t>(row)];
-  const auto end = matrix.columns.begin() + matrix.offsets[static_cast<std::size_t>(row) + 1];
-  const auto place = std::lower_bound(begin, end, column) - matrix.columns.begin();
-  block_at(matrix, static_cast<std::size_t>(place)) += block;
+void require_contacts_alone(const LinearSystem& system) {
+  if (!system.nodal.empty())
+    throw InputError(
+        "B and D are those of contacts, and the scene has deformable bodies, so K is not BᵀDB; ask for K and M alone");
 }
 
 }  // namespace
@@ -58,7 +41,11 @@ BlockMatrix stiffness_blocks(const LinearSystem& system) {
     for (const std::int32_t first : {e.a, e.b})
       for (const std::int32_t second : {e.a, e.b})
         if (first != contact::no_body && second != contact::no_body) couple(first, second);
+  for_each_block(system.nodal.k, [&](std::int32_t row, std::int32_t column, const Mat3&) { rows[row].push_back(column); });
   BlockMatrix matrix = with_pattern(std::move(rows), unknowns.blocks());
+  for_each_block(system.nodal.k, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+    if (row >= column) add_to(matrix, row, column, block);
+  });
   for (const ContactElement& e : system.elements)
     scatter(e, unknowns, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
       if (row >= column) add_to(matrix, row, column, block);
@@ -78,6 +65,7 @@ BlockMatrix stiffness_blocks(const LinearSystem& system) {
 }
 
 BlockMatrix kinematic_blocks(const LinearSystem& system) {
+  require_contacts_alone(system);
   const Unknowns& unknowns = system.unknowns;
   std::vector<std::vector<std::int32_t>> rows(2 * system.elements.size());
   for (std::size_t e = 0; e < system.elements.size(); ++e)
@@ -112,6 +100,7 @@ BlockMatrix kinematic_blocks(const LinearSystem& system) {
 }
 
 BlockMatrix elasticity_blocks(const LinearSystem& system) {
+  require_contacts_alone(system);
   BlockMatrix matrix;
   matrix.block_rows = matrix.block_columns = static_cast<std::int32_t>(2 * system.elements.size());
   matrix.values.resize(block_numbers * 2 * system.elements.size());

@@ -138,12 +138,34 @@ bool within_clump(const model::Clumps& clumps, const search::CandidatePair& pair
   return !clumps.empty() && clumps.same(pair.a, pair.b) && pair.image == model::Image{};
 }
 
+/// Pairs of balls that are near each other. Nodes of deformable bodies are no balls: they are left out.
+std::vector<search::CandidatePair> candidates(const Model& model, double reach) {
+  const model::Bodies& bodies = model.bodies;
+  if (model.solids.empty()) return search::candidate_pairs(bodies.position, bodies.radius, model.cell, reach);
+  std::vector<std::int32_t> row;
+  std::vector<Vec3> position;
+  std::vector<double> radius;
+  for (std::int32_t i = 0; i < bodies.size(); ++i) {
+    const auto ball = static_cast<std::size_t>(i);
+    if (is_node(bodies, ball)) continue;
+    row.push_back(i);
+    position.push_back(bodies.position[ball]);
+    radius.push_back(bodies.radius[ball]);
+  }
+  if (row.empty()) return {};
+  std::vector<search::CandidatePair> found = search::candidate_pairs(position, radius, model.cell, reach);
+  for (search::CandidatePair& pair : found) {
+    pair.a = row[static_cast<std::size_t>(pair.a)];
+    pair.b = row[static_cast<std::size_t>(pair.b)];
+  }
+  return found;
+}
+
 PairsByRule ball_ball_pairs(const model::Scene& scene, const Model& model, const contact::Contacts& before,
                             double reach) {
   const model::Bodies& bodies = model.bodies;
   PairsByRule result(scene, chosen_contacts<contact::BallBall>(scene, model, before));
-  for (const search::CandidatePair& found :
-       search::candidate_pairs(bodies.position, bodies.radius, model.cell, reach)) {
+  for (const search::CandidatePair& found : candidates(model, reach)) {
     const auto a = static_cast<std::size_t>(found.a);
     const auto b = static_cast<std::size_t>(found.b);
     if (within_clump(bodies.clumps, found)) continue;
@@ -273,9 +295,11 @@ PairsByRule ball_facet_pairs(const model::Scene& scene, const Model& model, cons
     for_chunks(bodies, chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
       std::vector<Pair> found;
       FacetSearch search(model, radii, known, reach);
-      for (std::int64_t body = begin; body < end; ++body)
+      for (std::int64_t body = begin; body < end; ++body) {
+        if (is_node(model.bodies, static_cast<std::size_t>(body))) continue;
         for (std::size_t s = 0; s < model.surfaces.size(); ++s)
           search.search(static_cast<std::int32_t>(body), s, found);
+      }
       chunks[static_cast<std::size_t>(chunk)] = std::move(found);
     });
   } catch (const contact::CentreOnFacet& found) {
@@ -407,6 +431,7 @@ bool needs_rotation(const model::Scene& scene) {
 
 void list_contacts(Model& model, const model::Scene& scene, double reach, NewContacts touching) {
   wrap(model);
+  renew_skins(model);
   contact::Contacts before = std::exchange(model.contacts, {});
   before.for_each_group([](auto& group) { sort_contacts(group); });
   const bool touching_only = reach <= 0;

@@ -14,6 +14,11 @@ Eigen::SparseMatrix<double> stiffness_matrix(const LinearSystem& system) {
         for (int j = 0; j < 3; ++j)
           triplets.emplace_back(std::int64_t{3} * row + i, std::int64_t{3} * column + j, block(i, j));
     });
+  for_each_block(system.nodal.k, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        triplets.emplace_back(std::int64_t{3} * row + i, std::int64_t{3} * column + j, block(i, j));
+  });
   Eigen::SparseMatrix<double> matrix(unknowns.size(), unknowns.size());
   matrix.setFromTriplets(triplets.begin(), triplets.end());
   return matrix;

@@ -112,6 +112,19 @@ double farthest_image(const Model& model) {
   return farthest;
 }
 
+/// Calls visit(c, corner, body) for the corners of all triangles in a group that are bodies.
+template <class Group, class Visit>
+void for_each_skin_corner(const Model& model, const Group& group, const Visit& visit) {
+  if constexpr (std::is_same_v<typename Group::KinematicsType, contact::BallFacet>)
+    for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+      const std::int32_t facet = group.pairs[c].b;
+      if (!model.facets.deforms(facet)) continue;
+      const auto& vertex = model.facets.facet[static_cast<std::size_t>(facet)].vertex;
+      for (std::size_t k = 0; k < 3; ++k)
+        visit(c, k, model.facets.body[static_cast<std::size_t>(vertex[k])]);
+    }
+}
+
 /// A thread's sums of the chunk that it works on: they stay in the processor's cache from one chunk to the
 /// next.
 kernel::BodySum* zeroed_sums(std::int64_t bodies) {
@@ -158,6 +171,9 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
     if constexpr (std::decay_t<decltype(group)>::KinematicsType::second_is_body)
       for (const contact::Pair& pair : group.pairs)
         if (elsewhere(pair)) ++foreign_starts_[static_cast<std::size_t>(pair.b) + 1];
+    for_each_skin_corner(model, group, [&](std::size_t, std::size_t, std::int32_t body) {
+      ++foreign_starts_[static_cast<std::size_t>(body) + 1];
+    });
   });
   for (std::size_t i = 0; i < static_cast<std::size_t>(bodies); ++i)
     foreign_starts_[i + 1] += foreign_starts_[i];
@@ -177,6 +193,10 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
     if constexpr (Group::KinematicsType::second_is_body)
       for (const contact::Pair& pair : pairs)
         plan.slot.push_back(elsewhere(pair) ? next[pair.b]++ : kernel::own_chunk);
+    for_each_skin_corner(model, group, [&](std::size_t c, std::size_t corner, std::int32_t body) {
+      plan.skin_slot.resize(pairs.size());
+      plan.skin_slot[c][corner] = next[static_cast<std::size_t>(body)]++;
+    });
     if constexpr (contact::BondLaw<typename Group::LawType>)
       plan.broken.resize(static_cast<std::size_t>(chunks));
     if constexpr (in_packs<Group>) {
@@ -186,8 +206,10 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
     }
   });
   const std::vector<double>& radius = model.bodies.radius;
-  if (!places_.empty())
-    margin_ = margin_of_radius * std::accumulate(radius.begin(), radius.end(), 0.0) / std::ssize(radius);
+  if (!places_.empty()) {
+    const auto balls = std::ssize(radius) - std::ranges::count(radius, 0.0);  // nodes have no radius
+    margin_ = margin_of_radius * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(balls);
+  }
 }
 
 ContactForceSum::~ContactForceSum() = default;
@@ -297,6 +319,9 @@ void ContactForceSum::sum_one_by_one(GroupPlan& plan, Group& group, const model:
     if constexpr (Kinematics::second_is_body)
       if (const std::int32_t slot = plan.slot[c]; slot != kernel::own_chunk)
         foreign_[static_cast<std::size_t>(slot)] = {};
+    const bool on_skin = contact::on_skin<Kinematics>(placement, pair);
+    if (on_skin)
+      for (const std::int32_t slot : plan.skin_slot[c]) foreign_[static_cast<std::size_t>(slot)] = {};
     const contact::ContactGeometry geometry = Kinematics::geometry(placement, pair);
     if (!group.law.acts(contact::at_rest(geometry), old)) {
       if constexpr (commit) group.states[c] = ContactState{};
@@ -318,16 +343,35 @@ void ContactForceSum::sum_one_by_one(GroupPlan& plan, Group& group, const model:
                                     : foreign_[static_cast<std::size_t>(slot)],
           ends.force_b, ends.moment_b);
     }
+    if (on_skin) {
+      const contact::SkinPoint point = contact::skin_point(placement, pair);
+      for (std::size_t i = 0; i < 3; ++i)
+        Eigen::Map<Vec3>(foreign_[static_cast<std::size_t>(plan.skin_slot[c][i])].force) +=
+            point.share(i, ends.force_b, ends.moment_b);
+    }
   }
 }
 
+contact::Placement ContactForceSum::placement(const Model& model, const Trial& trial,
+                                              const model::Facets& facets) {
+  contact::Placement placement = placement_in(model, trial);
+  if (model.solids.empty()) return placement;
+  placement.facets = &facets;
+  std::vector<Vec3> middle(trial.position.begin(), trial.position.end());
+  for (std::size_t i = 0; i < middle.size(); ++i) middle[i] -= 0.5 * trial.duration * trial.velocity[i];
+  if (middle_facets_.empty()) middle_facets_ = model.facets;
+  place_skins(model.solids, middle, middle_facets_);
+  placement.middle_facets = &middle_facets_;
+  return placement;
+}
+
 template <bool commit, class ModelRef>
-void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum) {
+void ContactForceSum::sum_groups(ModelRef& model, const contact::Placement& placement, const Trial& trial,
+                                 BodyForces& sum) {
   EIGENGRAIN_ASSERT(plans_.size() == model.contacts.groups.size(), plans_.size());
   const auto bodies = static_cast<std::size_t>(model.bodies.size());
   sum.force.resize(bodies);
   sum.moment.resize(turns_ ? bodies : 0);
-  const contact::Placement placement = placement_in(model, trial);
   if constexpr (commit) {
     broken_.clear();
     for (GroupPlan& plan : plans_)
@@ -347,7 +391,9 @@ void ContactForceSum::sum_groups(ModelRef& model, const Trial& trial, BodyForces
                }
              });
   add_foreign(sum);
+  of_elements_.add(model.solids, trial.position, sum.force);
   if constexpr (commit) {
+    check_solids(model.solids, trial.position, sum.force);
     if (selects_) way_ = 0;
     for (const GroupPlan& plan : plans_)
       for (const std::vector<BondBreak>& found : plan.broken)
@@ -368,7 +414,11 @@ void ContactForceSum::add_foreign(BodyForces& sum) const {
 
 void ContactForceSum::evaluate(const Model& model, const Trial& trial, BodyForces& sum) {
   way_ = infinity;  // it writes what candidates alone write in advance()
-  sum_groups<false>(model, trial, sum);
+  if (!model.solids.empty()) {
+    if (trial_facets_.empty()) trial_facets_ = model.facets;
+    place_skins(model.solids, trial.position, trial_facets_);
+  }
+  sum_groups<false>(model, placement(model, trial, trial_facets_), trial, sum);
 }
 
 void ContactForceSum::follow_facets(Model& model, const contact::Placement& placement) const {
@@ -386,10 +436,11 @@ void ContactForceSum::follow_facets(Model& model, const contact::Placement& plac
 void ContactForceSum::advance(Model& model, const Trial& trial, BodyForces& sum,
                               contact::Dissipation* dissipated) {
   try {
-    const contact::Placement placement = placement_in(model, trial);
-    follow_facets(model, placement);
-    if (dissipated != nullptr) *dissipated += dissipation_in(model, placement, trial);
-    sum_groups<true>(model, trial, sum);
+    place_skins(model.solids, trial.position, model.facets);
+    const contact::Placement where = placement(model, trial, model.facets);
+    follow_facets(model, where);
+    if (dissipated != nullptr) *dissipated += dissipation_in(model, where, trial);
+    sum_groups<true>(model, where, trial, sum);
   } catch (const contact::CentreOnFacet& found) {
     throw centre_on_facet(model, found);
   }
@@ -421,8 +472,14 @@ double elastic_energy(const Model& model, const Displacement& displacement) {
   constexpr std::int64_t chunk_size = 4096;
   const TrialState state(model, displacement);
   const Trial trial = state.trial();
-  const contact::Placement placement = model.placement(trial.position, trial.orientation);
-  double energy = 0;
+  contact::Placement placement = model.placement(trial.position, trial.orientation);
+  model::Facets facets;
+  if (!model.solids.empty()) {
+    facets = model.facets;
+    place_skins(model.solids, trial.position, facets);
+    placement.facets = &facets;
+  }
+  double energy = elastic_energy_of(model.solids, trial.position);
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     std::vector<double> parts(static_cast<std::size_t>((group.size() + chunk_size - 1) / chunk_size), 0.0);

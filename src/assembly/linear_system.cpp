@@ -53,20 +53,37 @@ LinearSystem with_viscosity(const LinearSystem& system, double mu) {
     result.elements[e].stiffness.normal += mu * result.damping[e].normal;
     result.elements[e].stiffness.shear += mu * result.damping[e].shear;
   }
+  for (std::size_t k = 0; k < result.nodal.viscous.size(); ++k)
+    result.nodal.k.values[k] += mu * result.nodal.viscous[k];
+  for (std::size_t i = 0; i < result.nodal.viscous_bound.size(); ++i)
+    result.nodal.bound[i] += mu * result.nodal.viscous_bound[i];
   return result;
 }
 
 std::vector<contact::ContactElement> viscous_elements(const LinearSystem& system) {
   std::vector<contact::ContactElement> elements = system.elements;
   for (std::size_t e = 0; e < elements.size(); ++e)
-    elements[e].stiffness = {.normal = system.damping[e].normal, .shear = system.damping[e].shear};
+    elements[e].stiffness = system.damping.empty() ? contact::ContactStiffness{} : contact::ContactStiffness{.normal = system.damping[e].normal, .shear = system.damping[e].shear};
   return elements;
+}
+
+LinearSystem viscous_part(const LinearSystem& system) {
+  LinearSystem result = system;
+  result.elements = viscous_elements(system);
+  if (!result.nodal.empty()) {
+    result.nodal.k.values = system.nodal.viscous;
+    result.nodal.k.values.resize(system.nodal.k.values.size(), 0.0);
+    result.nodal.bound = system.nodal.viscous_bound;
+    result.nodal.bound.resize(system.nodal.bound.size(), Mat6::Zero());
+  }
+  return result;
 }
 
 LinearSystem::LinearSystem(const Model& model, Listed which)
     : elements(contact_elements(model, which)),
       damping(contact_damping(model, which)),
-      unknowns(model.bodies, elements),
+      unknowns(model.bodies, elements, touched_by_nodal(model, which)),
+      nodal(nodal_stiffness(model, which, unknowns)),
       mass(mass_diagonal(model.bodies, unknowns)) {}
 
 std::vector<double> LinearSystem::inverse_sqrt_mass() const {

@@ -13,6 +13,7 @@ Model build_model(const model::Scene& scene, double reach) {
   if (needs_orientation(scene))
     model.bodies.orientation.assign(model.bodies.position.size(), Quat::Identity());
   model::sort_along_curve(model.bodies);
+  set_solids(model, scene.deformables);
   list_contacts(model, scene, reach, NewContacts::formed);
   make_bonds(model, scene);
   return model;

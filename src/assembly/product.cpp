@@ -275,6 +275,23 @@ std::int64_t bytes_of(const std::vector<Chunk>& chunks) {
   return static_cast<std::int64_t>(sum);
 }
 
+/// y += S A S x, row by row.
+void add_nodal(const BlockMatrix& a, const std::vector<double>& scale, std::span<const double> x,
+               std::span<double> y) {
+  using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  for_each_index(a.block_rows, [&](std::int64_t row) {
+    const auto r = static_cast<std::size_t>(row);
+    if (a.offsets[r] == a.offsets[r + 1]) return;
+    Vec3 sum = Vec3::Zero();
+    for (auto k = static_cast<std::size_t>(a.offsets[r]); k < static_cast<std::size_t>(a.offsets[r + 1]); ++k) {
+      const auto j = 3 * static_cast<std::size_t>(a.columns[k]);
+      sum += Eigen::Map<const RowMajor3>(&a.values[9 * k]) *
+             Vec3(scale[j] * x[j], scale[j + 1] * x[j + 1], scale[j + 2] * x[j + 2]);
+    }
+    for (std::size_t i = 0; i < 3; ++i) y[3 * r + i] += scale[3 * r + i] * sum[static_cast<Eigen::Index>(i)];
+  });
+}
+
 }  // namespace
 
 struct StiffnessProduct::Data {
@@ -317,12 +334,14 @@ struct StiffnessProduct::Data {
   PaddedVector x;
   std::vector<std::vector<OwnAxes>> axes;  ///< [chunks], or empty
   const product::Kernel* kernel = &product::best_kernel();
+  const BlockMatrix* nodal = nullptr;
   std::int64_t record_bytes = 0;
   std::int64_t products = 0;
 };
 
-StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, std::span<const ContactElement> elements,
+StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, const StiffnessParts& parts,
                                    std::span<const double> scale) {
+  const std::span<const ContactElement> elements = parts.contacts;
   const std::int32_t bodies = unknowns.bodies();
   const std::vector<Kind> kinds = kinds_of(elements);
   // Contacts with shear read rotations even where every body holds its own; clumps have them without.
@@ -338,6 +357,10 @@ StiffnessProduct::StiffnessProduct(const Unknowns& unknowns, std::span<const Con
   });
   data_->record_bytes = bytes_of(data_->chunks);
   data_->axes = own_axes(unknowns, data_->layout, data_->chunks);
+  if (parts.nodal != nullptr) {
+    data_->nodal = &parts.nodal->k;
+    data_->record_bytes += static_cast<std::int64_t>(76 * parts.nodal->k.columns.size());
+  }
 }
 
 StiffnessProduct::~StiffnessProduct() = default;
@@ -371,6 +394,7 @@ void StiffnessProduct::apply(std::span<const double> x, std::span<double> y) {
     if (!d.axes.empty()) d.to_own_axes(c, sums);
     d.kernel->strip(d.layout, chunk, sums, y.data());
   });
+  if (d.nodal != nullptr) add_nodal(*d.nodal, d.layout.scale, x, y);
 }
 
 }  // namespace eigengrain::assembly

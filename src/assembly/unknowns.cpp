@@ -26,7 +26,8 @@ std::vector<Demand> demands(std::int32_t bodies, std::span<const contact::Contac
 
 }  // namespace
 
-Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements)
+Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements,
+                   std::span<const TouchedBody> others)
     : block_(bodies.position.size(), {none, none}) {
   const model::Clumps& clumps = bodies.clumps;
   if (!clumps.empty()) axes_of_.assign(bodies.position.size(), none);
@@ -34,7 +35,11 @@ Unknowns::Unknowns(const model::Bodies& bodies, std::span<const contact::Contact
     axes_of_[clumps.holder(c)] = c;
     axes_.emplace_back(clumps.orientation[c].toRotationMatrix());
   }
-  const std::vector<Demand> demand = demands(bodies.size(), elements);
+  std::vector<Demand> demand = demands(bodies.size(), elements);
+  for (const TouchedBody& other : others) {
+    demand[other.body].touched = true;
+    demand[other.body].turned = demand[other.body].turned || other.turned;
+  }
   const auto number = [&](std::int32_t body, int which, std::uint8_t fixed) {
     if (fixed == 7) return;
     block_[body][which] = blocks();

@@ -151,7 +151,11 @@ std::set<std::pair<std::int32_t, std::int32_t>> meeting_pairs(const SceneDraft& 
       if (wall.material >= 0) pairs.insert(std::minmax(a, wall.material));
     for (const model::Surface& wall : scene.surfaces)
       if (wall.material >= 0) pairs.insert(std::minmax(a, wall.material));
+    for (const model::Deformable& body : scene.deformables) pairs.insert(std::minmax(a, body.material));
   }
+  for (const model::Deformable& body : scene.deformables)
+    for (const model::Plane& wall : scene.walls)
+      if (wall.material >= 0) pairs.insert(std::minmax(body.material, wall.material));
   return pairs;
 }
 

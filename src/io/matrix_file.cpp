@@ -65,11 +65,14 @@ struct Named {
 };
 
 std::vector<Named> matrices_of(const LinearSystem& system) {
-  return {{"K", "stiffness, N/m, N, N m", assembly::stiffness_blocks(system)},
-          {"M", "mass, kg, kg m2", diagonal(system.mass)},
-          {"B", "kinematics: relative displacement (m) and rotation (rad) of each contact",
-           assembly::kinematic_blocks(system), false},
-          {"D", "stiffness of the contacts, N/m, N m", assembly::elasticity_blocks(system)}};
+  std::vector<Named> matrices;
+  matrices.push_back({"K", "stiffness, N/m, N, N m", assembly::stiffness_blocks(system)});
+  matrices.push_back({"M", "mass, kg, kg m2", diagonal(system.mass)});
+  if (!system.nodal.empty()) return matrices;  // elements have no B and D of this form
+  matrices.push_back({"B", "kinematics: relative displacement (m) and rotation (rad) of each contact",
+                      assembly::kinematic_blocks(system), false});
+  matrices.push_back({"D", "stiffness of the contacts, N/m, N m", assembly::elasticity_blocks(system)});
+  return matrices;
 }
 
 path write(const path& file, std::string_view bytes) {

@@ -41,7 +41,7 @@ BallMotion motion_of_balls(const model::Bodies& bodies, const ModeShape& mode) {
 
 void write_modes(const std::filesystem::path& file, const model::Bodies& bodies,
                  std::span<const ModeShape> modes) {
-  const std::vector<std::int32_t> rows = vtk::rows_by_identity(bodies);
+  const std::vector<std::int32_t> rows = vtk::rows_by_identity(bodies, vtk::Rows::balls_and_nodes);
   const std::size_t count = rows.size();
   std::vector<BallMotion> motions;
   for (const ModeShape& mode : modes) motions.push_back(motion_of_balls(bodies, mode));

@@ -205,6 +205,24 @@ void refuse_changed_meshes(const h5::File& hdf5, const model::Scene& stored, con
                          stored.surfaces[s].name));
 }
 
+/// Which bodies are the nodes of deformable ones.
+void find_nodes(const h5::File& hdf5, const fs::path& file, std::vector<model::Deformable>& deformables) {
+  const std::size_t there = hdf5.has(layout::deformables) ? hdf5.rows(layout::deformable_first_node) : 0;
+  if (there != deformables.size())
+    refuse(file, fmt::format("deformables: {} where the state has {}; keep their number, or start from the scene",
+                             deformables.size(), there));
+  if (there == 0) return;
+  const auto first_node = hdf5.read<std::int64_t>(layout::deformable_first_node, there);
+  const auto then = hdf5.read<std::int64_t>(layout::deformable_fingerprint, there);
+  for (std::size_t d = 0; d < there; ++d) {
+    deformables[d].first_node = first_node[d];
+    if (fingerprint(deformables[d].mesh) != then[d])
+      refuse(file, fmt::format("{}: its mesh is another one than when the state was written; put the file back, or "
+                               "start from the scene",
+                               deformables[d].name));
+  }
+}
+
 /// Puts the walls that had moved where they were. Others that move now begin where the settings say.
 void read_walls(const h5::File& hdf5, const fs::path& file, assembly::State& state) {
   assembly::Model& model = state.model;
@@ -313,8 +331,10 @@ void begin_other_masses(const model::Scene& stored, assembly::State& state) {
 
 model::Scene read_settings(const std::string& document, const fs::path& file,
                            std::span<const std::string> overrides, const model::Bodies& bodies) {
-  return read_settings_text(document, file.parent_path(), file.string() + ", settings", overrides,
-                            bodies.material);
+  std::vector<std::int32_t> of_balls;  // nodes of deformable bodies are none
+  for (std::size_t i = 0; i < bodies.material.size(); ++i)
+    if (!assembly::is_node(bodies, i)) of_balls.push_back(bodies.material[i]);
+  return read_settings_text(document, file.parent_path(), file.string() + ", settings", overrides, of_balls);
 }
 
 assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
@@ -337,8 +357,10 @@ assembly::State read_contents(const h5::File& hdf5, const fs::path& file,
   state.settings = read_settings(document, file, overrides, state.model.bodies);
   state.settings.name = hdf5.text(layout::root, "scene");
   refuse_changed_meshes(hdf5, stored, file);
+  find_nodes(hdf5, file, state.settings.deformables);
   if (const auto problem = forbidden_change(stored, state.settings)) refuse(file, *problem);
   assembly::set_surroundings(state.model, state.settings);
+  assembly::set_solids(state.model, state.settings.deformables);
   read_cell(hdf5, stored, file, state);
   read_walls(hdf5, file, state);
   state.model.contacts = restore_contacts(hdf5, state.settings, state.model, file.string());

@@ -45,6 +45,7 @@ struct SceneDraft {
   bool balls_complete = true;                ///< neither was a ball
   bool walls_complete = true;                ///< nor a wall
   bool measures_complete = true;             ///< nor a region
+  std::vector<model::Bodies> nodes;          ///< of each deformable body
   std::set<std::int32_t> materials_to_come;  ///< of balls that stages add
   bool wraps = true;            ///< balls into the cell, which may have moved since when they come in later
   std::int64_t repetition = 0;  ///< of the stage whose balls are read: adds to their seeds
@@ -61,6 +62,10 @@ void read_balls(const Section& root, SceneDraft& draft);
 /// After read_balls.
 void read_clumps(const Section& root, SceneDraft& draft);
 void read_walls(const Section& root, SceneDraft& draft);
+/// Without their nodes, which are no balls for any check.
+void read_deformables(const Section& root, SceneDraft& draft);
+/// Adds the nodes behind all bodies; a state has them already.
+void append_nodes(SceneDraft& draft);
 void read_gravity(const Section& root, SceneDraft& draft);
 void read_damping(const Section& root, SceneDraft& draft);
 void read_timestep(const Section& root, SceneDraft& draft);

@@ -23,6 +23,9 @@ std::vector<KeyDescription> clump_keys();
 /// Walls and the periodic cell.
 std::vector<KeyDescription> wall_keys();
 
+/// Bodies of finite elements.
+std::vector<KeyDescription> deformable_keys();
+
 /// How the scene moves, and for how long.
 std::vector<KeyDescription> run_keys();
 

@@ -28,6 +28,7 @@ void read_sections(const Section& root, SceneDraft& draft, const TakeBalls& take
   read_contacts(root, draft);
   take_balls(root, draft);
   read_walls(root, draft);
+  read_deformables(root, draft);
   read_damping(root, draft);
   read_timestep(root, draft);
   read_mass_scaling(root, draft);
@@ -58,6 +59,7 @@ Document read_document(std::string_view yaml, std::string_view name, std::span<c
 constexpr std::string_view balls_key = "balls";
 constexpr std::string_view planar_key = "planar";
 constexpr std::string_view clumps_key = "clumps";
+constexpr std::string_view deformables_key = "deformables";
 
 void make_absolute(Node* path, const std::filesystem::path& folder) {
   if (path != nullptr && path->kind == Node::Kind::scalar && !path->text.empty())
@@ -96,6 +98,9 @@ std::string document_for_states(const Document& document, const std::filesystem:
   for (Node& section : root.children) {
     if (section.key == "walls")
       for (Node& wall : section.children) make_paths_of_wall_absolute(wall, folder);
+    if (section.key == deformables_key)
+      for (Node& entry : section.children)
+        if (Node* mesh = entry.find("mesh")) make_absolute(mesh->find("file"), folder);
     if (section.key == "stages")
       for (Node& stage : section.children) make_paths_of_stage_absolute(stage, folder);
   }
@@ -132,7 +137,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   draft.folder = folder;
   draft.scene.document = document_for_states(document, folder);
   const Section root(document.root, "", "", diagnostics);
-  root.check_keys(root.has(clumps_key) ? balls_key : std::string_view());
+  root.check_keys(root.has(clumps_key) || root.has(deformables_key) ? balls_key : std::string_view());
   read_sections(root, draft, [](const Section& section, SceneDraft& into) {
     read_balls(section, into);
     read_clumps(section, into);
@@ -143,6 +148,7 @@ model::Scene read_scene_text(std::string_view yaml, const std::filesystem::path&
   take_from_materials(draft, diagnostics);
   check_mass_scaling(root, draft);
   check_placement(root, draft);
+  append_nodes(draft);
   diagnostics.throw_if_any();
   check_stages(root, draft, draft.scene.document);
   diagnostics.throw_if_any();

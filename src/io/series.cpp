@@ -97,6 +97,9 @@ void Series::add(const assembly::State& state, std::span<const assembly::BondBre
     case Of::surfaces:
       write_surface_frame(file, state.model);
       break;
+    case Of::solids:
+      write_solid_frame(file, state);
+      break;
     case Of::breaks:
       write_break_frame(file, breaks);
   }

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
 #include <string>
@@ -51,6 +52,18 @@ Tensor rows_of(const Mat3& matrix) {
   return rows;
 }
 
+std::uint8_t vtk_type(model::ElementKind kind) {
+  switch (kind) {
+    case model::ElementKind::hex8:
+      return 12;
+    case model::ElementKind::tet10:
+      return 24;
+    case model::ElementKind::tet4:
+      break;
+  }
+  return 10;
+}
+
 std::vector<Tensor> stresses(const assembly::Model& model) {
   std::vector<Tensor> result;
   for (const Mat3& stress : measures::body_stresses(model)) result.push_back(rows_of(stress));
@@ -61,7 +74,7 @@ std::vector<Tensor> stresses(const assembly::Model& model) {
 
 void write_frame(const std::filesystem::path& file, const assembly::State& state, bool stress) {
   const model::Bodies& bodies = state.model.bodies;
-  const std::vector<std::int32_t> rows = rows_by_identity(bodies);
+  const std::vector<std::int32_t> rows = rows_by_identity(bodies, Rows::balls);  // nodes are in frames of their own
   const std::size_t count = rows.size();
   AppendedArrays arrays;
   const auto column = [&](std::string_view name, const auto& values) {
@@ -98,11 +111,62 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
   vtk::write_frame(file, xml, arrays);
 }
 
+void write_solid_frame(const std::filesystem::path& file, const assembly::State& state) {
+  const model::Bodies& bodies = state.model.bodies;
+  std::vector<Vec3> points;
+  std::vector<Vec3> displacement;
+  std::vector<Vec3> velocity;
+  std::vector<std::int64_t> identity;
+  std::vector<std::int64_t> corners;
+  std::vector<std::int64_t> ends;
+  std::vector<std::uint8_t> types;
+  std::vector<std::int32_t> body;
+  std::vector<Tensor> stress;
+  std::vector<double> mises;
+  std::array<Vec3, fem::most_nodes> x;
+  for (std::size_t s = 0; s < state.model.solids.size(); ++s) {
+    const assembly::Solid& solid = *state.model.solids[s];
+    const auto first = static_cast<std::int64_t>(points.size());
+    for (std::size_t node = 0; node < solid.row.size(); ++node) {
+      const auto row = static_cast<std::size_t>(solid.row[node]);
+      points.push_back(bodies.position[row]);
+      displacement.emplace_back(bodies.position[row] - solid.deformable.mesh.nodes[node]);
+      velocity.push_back(bodies.velocity.empty() ? Vec3(Vec3::Zero()) : bodies.velocity[row]);
+      identity.push_back(bodies.identity[row]);
+    }
+    const auto nodes = static_cast<std::size_t>(solid.elements.nodes());
+    for (std::int32_t e = 0; e < solid.elements.size(); ++e) {
+      for (const std::int32_t node : solid.deformable.mesh.element(e)) corners.push_back(first + node);
+      ends.push_back(static_cast<std::int64_t>(corners.size()));
+      types.push_back(vtk_type(solid.deformable.mesh.kind));
+      body.push_back(static_cast<std::int32_t>(s));
+      solid.gather(e, bodies.position, x);
+      const Mat3 sigma = solid.elements.mean_stress(solid.deformable.solid, e, std::span(x).first(nodes));
+      stress.push_back(rows_of(sigma));
+      const Mat3 deviator = sigma - sigma.trace() / 3 * Mat3::Identity();
+      mises.push_back(std::sqrt(1.5) * deviator.norm());
+    }
+  }
+  AppendedArrays arrays;
+  const auto given = [&](std::string_view name, const auto& values) {
+    return arrays.add(name, values.size(), [from = &values] { return *from; });
+  };
+  std::string xml = fmt::format("{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", frame_head, points.size(),
+                                types.size());
+  xml += "<PointData Vectors=\"displacement\">\n" + given("displacement", displacement) +
+         given("velocity", velocity) + given("identity", identity) + "</PointData>\n";
+  xml += "<CellData Scalars=\"von_mises\">\n" + given("von_mises", mises) + given("stress", stress) +
+         given("body", body) + "</CellData>\n";
+  xml += "<Points>\n" + given("Points", points) + "</Points>\n<Cells>\n" + given("connectivity", corners) +
+         given("offsets", ends) + given("types", types);
+  vtk::write_frame(file, xml, arrays);
+}
+
 void write_surface_frame(const std::filesystem::path& file, const assembly::Model& model) {
   std::vector<Vec3> points;
   std::vector<std::int64_t> corners;
   std::vector<std::int32_t> walls;
-  for (std::size_t s = 0; s < model.surfaces.size(); ++s) {
+  for (std::size_t s = 0; s + model.solids.size() < model.surfaces.size(); ++s) {  // without skins
     const contact::SurfacePlace& place = model.surface_places[s];
     const auto first = static_cast<std::int64_t>(points.size());
     for (const Vec3& x : model.surfaces[s].vertices)

@@ -81,10 +81,14 @@ class AppendedArrays {
   std::uint64_t offset_ = 0;
 };
 
+enum class Rows { balls, balls_and_nodes };
+
 /// Rows of the bodies in the order of identity.
-inline std::vector<std::int32_t> rows_by_identity(const model::Bodies& bodies) {
-  std::vector<std::int32_t> rows(bodies.identity.size());
-  std::iota(rows.begin(), rows.end(), 0);
+inline std::vector<std::int32_t> rows_by_identity(const model::Bodies& bodies, Rows which) {
+  std::vector<std::int32_t> rows;
+  rows.reserve(bodies.identity.size());
+  for (std::int32_t row = 0; row < bodies.size(); ++row)
+    if (which == Rows::balls_and_nodes || bodies.radius[static_cast<std::size_t>(row)] > 0) rows.push_back(row);
   std::sort(rows.begin(), rows.end(),
             [&](std::int32_t a, std::int32_t b) { return bodies.identity[a] < bodies.identity[b]; });
   return rows;
@@ -92,7 +96,7 @@ inline std::vector<std::int32_t> rows_by_identity(const model::Bodies& bodies) {
 
 template <class T>
 std::vector<T> gathered(const std::vector<T>& column, const std::vector<std::int32_t>& rows) {
-  EIGENGRAIN_ASSERT(column.size() == rows.size(), column.size(), rows.size());
+  EIGENGRAIN_ASSERT(column.size() >= rows.size(), column.size(), rows.size());
   std::vector<T> result;
   result.reserve(rows.size());
   for (const std::int32_t row : rows) result.push_back(column[static_cast<std::size_t>(row)]);

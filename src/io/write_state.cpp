@@ -200,6 +200,20 @@ void write_cell(const assembly::State& state, h5::File& file) {
   write_matrix(state.list.edges, layout::list_cell_edges, file);
 }
 
+/// Which bodies are the nodes of deformable ones; their meshes the settings name.
+void write_deformables(const std::vector<model::Deformable>& deformables, h5::File& file) {
+  if (deformables.empty()) return;
+  std::vector<std::int64_t> first_node;
+  std::vector<std::int64_t> fingerprints;
+  for (const model::Deformable& deformable : deformables) {
+    first_node.push_back(deformable.first_node);
+    fingerprints.push_back(fingerprint(deformable.mesh));
+  }
+  file.add_group(layout::deformables);
+  file.write(layout::deformable_first_node, first_node);
+  file.write(layout::deformable_fingerprint, fingerprints);
+}
+
 void write_contents(const assembly::State& state, h5::File& file) {
   file.set(layout::root, "format", layout::format);
   file.set(layout::root, "schema", layout::schema_of(state));
@@ -217,10 +231,11 @@ void write_contents(const assembly::State& state, h5::File& file) {
   file.write(layout::list_position, state.list.position);
   write_cell(state, file);
   write_walls(state, file);
-  if (!state.model.surfaces.empty()) {
+  if (!state.settings.surfaces.empty()) {
     file.add_group(layout::surfaces);
-    file.write(layout::surface_fingerprint, fingerprints(state.model.surfaces));
+    file.write(layout::surface_fingerprint, fingerprints(state.settings.surfaces));
   }
+  write_deformables(state.settings.deformables, file);
   if (state.ledger) {
     file.add_group(layout::ledger);
     layout::for_each_energy(*state.ledger, [&](const std::string& name, double energy) {

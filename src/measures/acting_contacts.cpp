@@ -130,6 +130,7 @@ std::vector<bool> rattlers(const assembly::Model& model, std::span<const ActingC
   std::vector<bool> removed(static_cast<std::size_t>(bodies), false);
   std::vector<std::int32_t> waiting;
   const auto look = [&](std::int32_t body) {
+    if (assembly::is_node(model.bodies, static_cast<std::size_t>(body))) return;  // elements hold it
     if (removed[body] || count[body] >= least || model.bodies.fixed[body].translation() == 7) return;
     removed[body] = true;
     waiting.push_back(body);

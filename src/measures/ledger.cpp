@@ -144,7 +144,8 @@ ElasticEnergy stored(const Law& law, const contact::Placement& placement, const 
 }  // namespace
 
 ElasticEnergy elastic_energy(const assembly::Model& model) {
-  ElasticEnergy energy;
+  ElasticEnergy energy{.elements = assembly::elastic_energy_of(model.solids, model.bodies.position),
+                       .has_elements = !model.solids.empty()};
   const contact::Placement placement = model.placement();
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
@@ -184,6 +185,7 @@ std::vector<LedgerEntry> entries_of(const Ledger& ledger) {
                                    {"elastic_rolling", ledger.elastic.rolling},
                                    {"elastic_bonds", ledger.elastic.bonds},
                                    {"gravitational", ledger.gravitational}};
+  if (ledger.elastic.has_elements) entries.push_back({"elastic_elements", ledger.elastic.elements});
   for (const assembly::EnergyIntegral& integral : assembly::energy_integrals)
     entries.push_back({std::string(integral.name), integral.of(ledger.integrals)});
   entries.push_back({"balance_error", ledger.balance_error});

@@ -162,4 +162,41 @@ Facets facets_of(std::span<const Surface> surfaces) {
   return result;
 }
 
+std::vector<std::array<std::int32_t, 3>> neighbours_of(const Surface& surface) {
+  std::vector<std::array<std::int32_t, 3>> result(surface.triangles.size(), {-1, -1, -1});
+  for_each_edge(sorted_edges(surface.triangles), [&](std::span<const Edge> same) {
+    if (same.size() != 2) return;
+    for (std::size_t k = 0; k < 2; ++k)
+      result[static_cast<std::size_t>(same[k].triangle)][static_cast<std::size_t>(same[k].side)] =
+          same[1 - k].triangle;
+  });
+  return result;
+}
+
+void place_facets(Facets& facets, std::int32_t facet, std::int32_t vertex,
+                  std::span<const std::array<std::int32_t, 3>> neighbours, std::span<const Vec3> place) {
+  const auto of_surface = std::span(facets.facet).subspan(static_cast<std::size_t>(facet), neighbours.size());
+  const auto vertex_normal =
+      std::span(facets.vertex_normal).subspan(static_cast<std::size_t>(vertex), place.size());
+  std::fill(vertex_normal.begin(), vertex_normal.end(), Vec3::Zero());
+  for (Facet& f : of_surface) {
+    for (std::size_t k = 0; k < 3; ++k) f.corner[k] = place[static_cast<std::size_t>(f.vertex[k] - vertex)];
+    const auto& [a, b, c] = f.corner;
+    f.normal = (b - a).cross(c - a).normalized();
+    for (std::size_t k = 0; k < 3; ++k)
+      vertex_normal[static_cast<std::size_t>(f.vertex[k] - vertex)] +=
+          angle_at(f.corner[k], f.corner[(k + 1) % 3], f.corner[(k + 2) % 3]) * f.normal;
+  }
+  for (std::size_t t = 0; t < neighbours.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      Facet& f = of_surface[t];
+      const std::int32_t other = neighbours[t][k];
+      // In the order of the triangles, so that both see the same sum to the bit.
+      f.edge_normal[k] = other < 0 ? f.normal
+                         : other < static_cast<std::int32_t>(t)
+                             ? Vec3(of_surface[static_cast<std::size_t>(other)].normal + f.normal)
+                             : Vec3(f.normal + of_surface[static_cast<std::size_t>(other)].normal);
+    }
+}
+
 }  // namespace eigengrain::model

@@ -3,11 +3,15 @@
 #include "eigengrain/assembly/bond_break.hpp"
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/assembly/moving_walls.hpp"
+#include "eigengrain/assembly/solid.hpp"
 #include "eigengrain/contact/dissipation.hpp"
+#include "eigengrain/contact/skin.hpp"
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace eigengrain::assembly {
@@ -64,6 +68,8 @@ contact::MotionOf<Law> motion_in(const Law& law, const contact::Placement& place
   contact::SideMotion second;
   if constexpr (Kinematics::second_is_body)
     second = trial.side(pair.b, pair.image);
+  else if (contact::on_skin<Kinematics>(placement, pair))
+    second = contact::skin_point(placement, pair).motion(trial.velocity, trial.duration);
   else if (trial.walls != nullptr)
     second = trial.walls->side[static_cast<std::size_t>(Kinematics::wall(placement, pair))];
   contact::MotionOf<Law> motion =
@@ -88,8 +94,8 @@ struct BodySum;
 struct Candidate;
 }  // namespace kernel
 
-/// The sum of contact forces on every body, for one contact graph: the work of the explicit cycle and of a
-/// residual. Threads share fixed chunks of bodies; a contact is evaluated once, in the chunk of its first
+/// The sum of the forces of contacts and of elements on every body, for one contact graph: the work of the explicit cycle
+/// and of a residual. Threads share fixed chunks of bodies; a contact is evaluated once, in the chunk of its first
 /// body, and what it does to a body of another chunk is kept and added in the end. So every sum has one order
 /// (the order of the contacts), and the result is the same to the bit on any number of threads. Nothing is
 /// allocated in a steady state. Cost O(contacts).
@@ -120,6 +126,7 @@ class ContactForceSum {
   struct GroupPlan {
     std::vector<std::int64_t> starts;  ///< [chunks + 1]
     std::vector<std::int32_t> slot;    ///< [contacts] into foreign_, or own_chunk; empty for walls
+    std::vector<std::array<std::int32_t, 3>> skin_slot;  ///< [contacts] of corners that are bodies; empty without skins
     /// [chunks] those that a kernel evaluates, as of the last selection; empty for scalar loops
     std::vector<std::vector<kernel::Candidate>> candidates;
     std::vector<std::vector<BondBreak>> broken;  ///< [chunks] in the last advance; empty where nothing breaks
@@ -131,8 +138,10 @@ class ContactForceSum {
     kernel::BodySum* sums;  ///< [bodies of the chunk]
   };
 
+  /// Where the sides of contacts are, with the skins of solids at the trial positions.
+  contact::Placement placement(const Model& model, const Trial& trial, const model::Facets& facets);
   template <bool commit, class ModelRef>
-  void sum_groups(ModelRef& model, const Trial& trial, BodyForces& sum);
+  void sum_groups(ModelRef& model, const contact::Placement& placement, const Trial& trial, BodyForces& sum);
   template <bool commit, class Group>
   void sum_group(GroupPlan& plan, Group& group, const Model& model, const contact::Placement& placement,
                  const Trial& trial, const Chunk& chunk);
@@ -159,6 +168,9 @@ class ContactForceSum {
       std::numeric_limits<double>::infinity();  ///< by which two may be nearer than at the last selection, m
   bool selects_ = true;                         ///< in this call
   std::vector<BondBreak> broken_;
+  SolidForces of_elements_;
+  model::Facets trial_facets_;   ///< where there are solids
+  model::Facets middle_facets_;  ///< the same in the middle of the step
 };
 
 /// Finds the forces of a state anew from where everything is, as of contacts that stand still: springs keep

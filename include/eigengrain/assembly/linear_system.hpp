@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/assembly/model.hpp"
+#include "eigengrain/assembly/nodal_stiffness.hpp"
 #include "eigengrain/assembly/stiffness.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 #include "eigengrain/contact/element.hpp"
@@ -21,10 +22,15 @@ struct LinearSystem {
   /// [elements] the dashpots of the elements; empty where no contact has any.
   std::vector<contact::ContactDamping> damping;
   Unknowns unknowns;
+  NodalStiffness nodal;  ///< of deformable bodies; empty where there are none
   /// [unknowns.size()] the diagonal of M: mass for a u (kg), moment of inertia for a θ (kg m²), of
   /// clumps the three principal ones; the inertial ones where masses are scaled. Masked
   /// components carry it too; it is never zero.
   std::vector<double> mass;
+
+  /// All of K.
+  StiffnessParts parts() const { return {elements, nodal}; }
+  bool has_dashpots() const { return !damping.empty() || !nodal.viscous.empty(); }
 
   /// [unknowns.size()] the diagonal of M^-½, with zeros at masked components: scaling K by it from both sides
   /// gives the symmetric matrix whose eigenvalues are those of M⁻¹K on the free components (and zeros).
@@ -36,6 +42,9 @@ struct LinearSystem {
 /// The same system with K + μC in place of K, C the matrix of its dashpots: what decides how long the steps
 /// of the damped cycle may be (docs/theory.md). μ in 1/s.
 LinearSystem with_viscosity(const LinearSystem& system, double mu);
+
+/// The same with C in place of K.
+LinearSystem viscous_part(const LinearSystem& system);
 
 /// C alone: contacts whose stiffness is that of their dashpots, N s/m for N/m.
 std::vector<contact::ContactElement> viscous_elements(const LinearSystem& system);

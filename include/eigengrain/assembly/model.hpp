@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/solid.hpp"
 #include "eigengrain/contact/group.hpp"
 #include "eigengrain/model/scene.hpp"
 #include "eigengrain/search/facet_tree.hpp"
@@ -13,8 +14,8 @@ namespace eigengrain::assembly {
 struct Model {
   model::Bodies bodies;                  ///< along a space-filling curve; identity is the place in the scene
   std::vector<model::Plane> walls;       ///< where they are now
-  std::vector<model::Surface> surfaces;  ///< walls of triangles, as they start
-  model::Facets facets;                  ///< their triangles, as they start
+  std::vector<model::Surface> surfaces;  ///< walls of triangles, as they start, and then the skins of `solids`
+  model::Facets facets;                  ///< their triangles, as they start; those of skins as they are
   std::vector<contact::SurfacePlace> surface_places;  ///< [surfaces] where they are now
   std::vector<search::FacetTree> facet_trees;         ///< [surfaces]
   std::vector<model::WallMotion> wall_motions;        ///< of those that move
@@ -24,6 +25,7 @@ struct Model {
   double local_damping = 0;                      ///< α
   double lever_cut = contact::to_contact_point;  ///< of the overlap, from the levers of contacts
   contact::Contacts contacts;
+  Solids solids;  ///< deformable bodies
 
   /// Walls of all kinds: planes, then surfaces.
   std::size_t wall_count() const { return walls.size() + surfaces.size(); }

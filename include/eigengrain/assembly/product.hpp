@@ -1,5 +1,6 @@
 #pragma once
 
+#include "eigengrain/assembly/stiffness_parts.hpp"
 #include "eigengrain/assembly/unknowns.hpp"
 #include "eigengrain/contact/element.hpp"
 
@@ -10,7 +11,7 @@
 
 namespace eigengrain::assembly {
 
-/// y = S K S x without K: each contact is one compact record, from 32 bytes (no shear) through 64 (balls) to
+/// y = S K S x without K but for the part of deformable bodies: each contact is one compact record, from 32 bytes (no shear) through 64 (balls) to
 /// 128 (anything else), against about 700 bytes of an assembled matrix.
 ///
 /// S is a diagonal scaling: M^-½ for the eigenvalues of M⁻¹K (LinearSystem::inverse_sqrt_mass), or ones at
@@ -21,10 +22,9 @@ namespace eigengrain::assembly {
 /// one order: the result is the same to the bit on any number of threads.
 class StiffnessProduct {
  public:
-  /// elements  contacts between bodies of `unknowns`
+  /// parts  of bodies of `unknowns`; contacts are copied, what is of nodes is referred to and has to stay
   /// scale     [unknowns.size()] the diagonal of S; empty: one at free components
-  StiffnessProduct(const Unknowns& unknowns, std::span<const contact::ContactElement> elements,
-                   std::span<const double> scale = {});
+  StiffnessProduct(const Unknowns& unknowns, const StiffnessParts& parts, std::span<const double> scale = {});
   ~StiffnessProduct();
   StiffnessProduct(StiffnessProduct&&) noexcept;
   StiffnessProduct& operator=(StiffnessProduct&&) noexcept;

@@ -4,6 +4,7 @@
 #include "eigengrain/assembly/model.hpp"
 #include "eigengrain/contact/bonds/bond.hpp"
 #include "eigengrain/contact/element.hpp"
+#include "eigengrain/contact/skin.hpp"
 
 #include <concepts>
 #include <type_traits>
@@ -45,7 +46,7 @@ bool is_element(const Group& group, std::size_t c) {
 }
 
 /// Calls visit(law, element), or visit(law, element, pair), for every contact that counts, group after group,
-/// in the order of the contacts. An end at a ball of a clump is one at the clump's holder, with the lever
+/// in the order of the contacts; but for those with skins of deformable bodies (for_each_skin_element). An end at a ball of a clump is one at the clump's holder, with the lever
 /// from the clump's centre. Cost O(contacts); nothing is allocated here.
 template <class Visit>
 void for_each_element(const Model& model, Listed which, const Visit& visit) {
@@ -53,7 +54,7 @@ void for_each_element(const Model& model, Listed which, const Visit& visit) {
   model.contacts.for_each_group([&](const auto& group) {
     using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
     for (std::size_t c = 0; c < group.pairs.size(); ++c) {
-      if (!is_element(group, c)) continue;
+      if (!is_element(group, c) || contact::on_skin<Kinematics>(placement, group.pairs[c])) continue;
       const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
       contact::ContactMotion motion = contact::at_rest(geometry);
       if (!counts(which, group.law, group.states[c], motion)) continue;
@@ -79,6 +80,34 @@ void for_each_element(const Model& model, Listed which, const Visit& visit) {
       else
         visit(group.law, element);
     }
+  });
+}
+
+/// The same for contacts with skins of deformable bodies: visit(law, element). The ball of a clump is its holder.
+template <class Visit>
+void for_each_skin_element(const Model& model, Listed which, const Visit& visit) {
+  if (model.solids.empty()) return;
+  const contact::Placement placement = model.placement();
+  model.contacts.for_each_group([&](const auto& group) {
+    using Kinematics = typename std::decay_t<decltype(group)>::KinematicsType;
+    if constexpr (std::is_same_v<Kinematics, contact::BallFacet>)
+      for (std::size_t c = 0; c < group.pairs.size(); ++c) {
+        if (!is_element(group, c) || !contact::on_skin<Kinematics>(placement, group.pairs[c])) continue;
+        const contact::ContactGeometry geometry = Kinematics::geometry(placement, group.pairs[c]);
+        contact::ContactMotion motion = contact::at_rest(geometry);
+        if (!counts(which, group.law, group.states[c], motion)) continue;
+        const std::int32_t ball = group.pairs[c].a;
+        contact::SkinElement element{
+            .element = {.a = model.bodies.clumps.owner(ball),
+                        .normal = geometry.normal,
+                        .lever_a = geometry.lever_a,
+                        .lever_b = geometry.lever_b,
+                        .stiffness = group.law.stiffness(motion, group.states[c])},
+            .point = contact::skin_point(placement, group.pairs[c]),
+        };
+        if (!model.bodies.clumps.empty()) element.element.lever_a += lever_of(model.bodies, ball);
+        visit(group.law, element);
+      }
   });
 }
 

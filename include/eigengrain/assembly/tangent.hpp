@@ -46,6 +46,7 @@ void assemble_tangent(const Model& model, const Trial& trial, Sink& sink, Slip s
     using Group = std::decay_t<decltype(group)>;
     using Kinematics = typename Group::KinematicsType;
     const contact::Pair& pair = group.pairs[c];
+    if (contact::on_skin<Kinematics>(placement, pair)) return;  // nodal_stiffness.hpp
     const auto motion = motion_in<Kinematics>(group.law, placement, trial, pair, geometry);
     const std::int32_t second = Kinematics::second_is_body ? pair.b : contact::no_body;
     const auto force = [&] {

@@ -10,6 +10,12 @@
 
 namespace eigengrain::assembly {
 
+/// A body that something else than contacts of two bodies resists.
+struct TouchedBody {
+  std::int32_t body = 0;
+  bool turned = false;  ///< its rotation too
+};
+
 /// Which unknowns a scene has. Every unknown is a vector, a block of three numbers.
 ///
 /// A body may have two, u and θ. A clump has them in the row of its holder, and its θ along its principal
@@ -25,7 +31,8 @@ class Unknowns {
   static constexpr int block_size = 3;
   static constexpr std::int32_t none = -1;
 
-  Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements);
+  Unknowns(const model::Bodies& bodies, std::span<const contact::ContactElement> elements,
+           std::span<const TouchedBody> others = {});
 
   /// Rows of the model's bodies, with unknowns or without.
   std::int32_t bodies() const { return static_cast<std::int32_t>(block_.size()); }

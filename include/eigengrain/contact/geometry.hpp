@@ -9,6 +9,8 @@ namespace eigengrain::contact {
 
 /// The part of the overlap that the lever of a ball is shorter than its radius: to the contact point.
 inline constexpr double to_contact_point = 0.5;
+/// To the nearest point of the other side, as a contact with a deformable surface needs it (skin.hpp).
+inline constexpr double to_nearest_point = 1;
 /// The lever of other codes (LAMMPS, LIGGGHTS), which ends at the surface of the ball.
 inline constexpr double to_surface = 0;
 

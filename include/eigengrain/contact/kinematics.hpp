@@ -62,6 +62,8 @@ struct Placement {
   std::span<const SurfacePlace> middle_surfaces{};  ///< in the middle of the step; empty where none moves
   double lever_cut = to_contact_point;              ///< of the overlap, from the levers
   std::span<const Quat> orientation{};  ///< [bodies] or empty; a trial orientation where position is one
+  /// Facets with those of deformable surfaces in the middle of the step; null: where they are.
+  const model::Facets* middle_facets = nullptr;
 };
 
 /// Side a is a ball, side b another ball (or an image of the same one).
@@ -139,15 +141,21 @@ struct BallFacet {
   }
 
   static ContactGeometry geometry(const Placement& placement, const Pair& pair) {
-    return geometry_of(placement, placement.surfaces, pair, Vec3::Zero());
+    return geometry_of(placement, placement.surfaces, facet_of(placement, pair), pair, Vec3::Zero());
   }
   /// In the middle of the step, with the feature that is touched at its end: what changes there is none of
   /// the motion's.
   static ContactGeometry geometry_before(const Placement& placement, const Pair& pair, const Vec3& back_a,
                                          const Vec3& /*back_b*/) {
+    const model::Facets& facets =
+        placement.middle_facets != nullptr ? *placement.middle_facets : *placement.facets;
     return geometry_of(placement,
                        placement.middle_surfaces.empty() ? placement.surfaces : placement.middle_surfaces,
-                       pair, back_a);
+                       facets.facet[static_cast<std::size_t>(pair.b)], pair, back_a);
+  }
+  /// Whether side b is a part of a deformable body, whose nodes feel the contact (skin.hpp).
+  static bool deforms(const Placement& placement, const Pair& pair) {
+    return placement.facets->deforms(pair.b);
   }
   static std::int32_t wall(const Placement& placement, const Pair& pair) {
     return static_cast<std::int32_t>(placement.walls.size()) + facet_of(placement, pair).surface;
@@ -166,12 +174,18 @@ struct BallFacet {
         .feature;
   }
   static ContactGeometry geometry_of(const Placement& placement, std::span<const SurfacePlace> places,
-                                     const Pair& pair, const Vec3& back) {
+                                     const model::Facet& facet, const Pair& pair, const Vec3& back) {
     const SurfacePlace& place = place_of(placement, places, pair);
+    const bool deformable = deforms(placement, pair);
     ContactGeometry result = ball_feature(
-        local_centre(placement, places, pair, back), placement.radius[pair.a], facet_of(placement, pair),
-        feature(placement, pair), pair.side < 0 ? -1 : 1, place.start, placement.lever_cut);
+        local_centre(placement, places, pair, back), placement.radius[pair.a], facet,
+        feature(placement, pair), pair.side < 0 ? -1 : 1, place.start,
+        deformable ? to_nearest_point : placement.lever_cut);
     if (!pair.is_contact()) result.overlap = std::min(result.overlap, 0.0);
+    if (deformable) {
+      result.lever_b.setZero();  // what moves is the point itself
+      return result;
+    }
     result.normal = place.turned(result.normal);
     result.lever_a = place.turned(result.lever_a);
     result.lever_b = place.turned(result.lever_b);

@@ -25,11 +25,13 @@ namespace eigengrain::io {
 /// Of surfaces, a frame has their triangles where they are, with the number of the wall (from 0) that each
 /// belongs to.
 ///
+/// Of deformable bodies, a frame has their elements with stresses, and their nodes with displacements.
+///
 /// Of breaks, a frame has a point for each bond that broke until then, where its contact was: time, step,
 /// mode (0: tension, 1: shear), ball_a, ball_b and normal.
 class Series {
  public:
-  enum class Of { balls, surfaces, breaks };
+  enum class Of { balls, surfaces, solids, breaks };
 
   /// Nothing is written before the first frame, which replaces the list of an earlier run.
   /// stress  whether frames of balls have their stress

@@ -16,13 +16,17 @@ struct ElasticEnergy {
   double shear = 0;    ///< of those across n
   double rolling = 0;  ///< of those against rolling and twisting
   double bonds = 0;    ///< in parallel bonds; a contact bond has the springs of its contact
+  double elements = 0;        ///< of deformable bodies
+  bool has_elements = false;  ///< whether there are any
 
-  double total() const { return normal + shear + rolling + bonds; }
+  double total() const { return normal + shear + rolling + bonds + elements; }
   ElasticEnergy& operator+=(const ElasticEnergy& other) {
     normal += other.normal;
     shear += other.shear;
     rolling += other.rolling;
     bonds += other.bonds;
+    elements += other.elements;
+    has_elements = has_elements || other.has_elements;
     return *this;
   }
 };

@@ -2,6 +2,7 @@
 
 #include "eigengrain/base/vec.hpp"
 #include "eigengrain/model/bodies.hpp"
+#include "eigengrain/model/deformable.hpp"
 #include "eigengrain/model/material.hpp"
 #include "eigengrain/model/region.hpp"
 #include "eigengrain/model/selection.hpp"
@@ -126,6 +127,7 @@ struct Scene {
   std::vector<Plane> walls;              ///< where they start
   std::vector<Surface> surfaces;         ///< walls of triangles; numbered behind the planes
   std::vector<WallMotion> wall_motions;  ///< of walls that move
+  std::vector<Deformable> deformables;   ///< their nodes stand in `bodies`, behind all balls
   PeriodicCell cell;
   Vec3 gravity = Vec3::Zero();  ///< m/s²
   double local_damping = 0.7;   ///< α of PFC3D's eq. 1.47, of bodies that have none of their own

@@ -61,12 +61,29 @@ struct Facets {
   /// Aanæs, IEEE Trans. Vis. Comput. Graph. 11:243, 2005); edge_normal does the same for edges.
   std::vector<Vec3> vertex_normal;
   std::vector<std::uint8_t> two_sided;  ///< [surfaces]
+  /// [vertices of all surfaces] rows of the bodies that are the vertices of deformable surfaces, else -1; empty where no
+  /// surface is deformable. Facets of such surfaces are where they are now.
+  std::vector<std::int32_t> body;
 
   bool empty() const { return facet.empty(); }
   std::int32_t size() const { return static_cast<std::int32_t>(facet.size()); }
+  /// Whether a facet belongs to a deformable surface.
+  bool deforms(std::int32_t f) const {
+    return !body.empty() && body[static_cast<std::size_t>(facet[static_cast<std::size_t>(f)].vertex[0])] >= 0;
+  }
 };
 
 /// Of surfaces without problems.
 Facets facets_of(std::span<const Surface> surfaces);
+
+/// [triangles of a surface] The triangle behind each edge, or -1 where there is none.
+std::vector<std::array<std::int32_t, 3>> neighbours_of(const Surface& surface);
+
+/// Puts corners [vertices of all surfaces] of a surface somewhere else, and makes all that follows from it.
+///
+/// facet, vertex  its first facet and first vertex in `facets`
+/// place          [vertices of the surface] m
+void place_facets(Facets& facets, std::int32_t facet, std::int32_t vertex,
+                  std::span<const std::array<std::int32_t, 3>> neighbours, std::span<const Vec3> place);
 
 }  // namespace eigengrain::model

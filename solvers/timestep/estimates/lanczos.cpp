@@ -91,7 +91,7 @@ LanczosRun lanczos(const assembly::LinearSystem& system, int steps, std::vector<
   const std::vector<double> scale = system.inverse_sqrt_mass();
   LanczosRun run;
   for (const double s : scale) run.components += s > 0 ? 1 : 0;
-  assembly::StiffnessProduct product(system.unknowns, system.elements, scale);
+  assembly::StiffnessProduct product(system.unknowns, system.parts(), scale);
   const auto n = static_cast<std::int64_t>(scale.size());
   std::vector<double> v = std::move(start);
   std::vector<double> before(v.size(), 0.0);

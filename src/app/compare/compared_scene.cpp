@@ -181,7 +181,7 @@ void measure_again(const timestep::Question& question, timestep::Comparison& com
 }
 
 double seconds_of_product(const assembly::LinearSystem& system) {
-  assembly::StiffnessProduct product(system.unknowns, system.elements, system.inverse_sqrt_mass());
+  assembly::StiffnessProduct product(system.unknowns, system.parts(), system.inverse_sqrt_mass());
   const auto n = static_cast<std::size_t>(product.size());
   std::vector<double> x(n, 1.0);
   std::vector<double> y(n);
