@@ -12,15 +12,19 @@ std::string text_of(const Place& place) {
   return place.line > 0 ? fmt::format("{}:{}", place.file, place.line) : place.file;
 }
 
-void Diagnostics::add(const Place& place, std::string message, std::string_view kind) {
+std::string text_of(const Vec3& position) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", position[0], position[1], position[2]);
+}
+
+void Diagnostics::add(const Place& place, std::string message, std::string_view kind, std::int64_t most) {
   ++count_;
   if (!kind.empty()) {
     Kind& known = kinds_[{place.file, std::string(kind)}];
-    if (known.count++ == limit) {
+    if (known.count++ == most) {
       known.counting_entry = entries_.size();
       entries_.push_back({{place.file, 0, {}}, place.line, 0});
     }
-    if (known.count > limit) {
+    if (known.count > most) {
       ++entries_[known.counting_entry].left_out;
       return;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "eigengrain/base/error.hpp"
+#include "eigengrain/base/vec.hpp"
 
 #include <cstdint>
 #include <map>
@@ -19,15 +20,18 @@ struct Place {
 
 /// "scene.yaml:12"
 std::string text_of(const Place& place);
+/// "(1, 0.5, -2) m"
+std::string text_of(const Vec3& position);
 
 /// Collects the mistakes found in an input, so that a user sees all of them at once. A kind of mistake that
-/// a big file repeats is listed `limit` times for that file, and then only counted.
+/// a big file repeats is listed a number of times for that file, and then only counted.
 class Diagnostics {
  public:
   static constexpr std::int64_t limit = 20;
 
   /// kind: any text that mistakes of one sort share; empty: never left out.
-  void add(const Place& place, std::string message, std::string_view kind = {});
+  /// most: how many of that kind are listed.
+  void add(const Place& place, std::string message, std::string_view kind = {}, std::int64_t most = limit);
 
   bool any() const { return !entries_.empty(); }
   /// Mistakes added so far, those only counted included.

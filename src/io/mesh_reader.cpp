@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -180,10 +179,6 @@ void read_obj(std::string_view text, SurfaceBuilder& surface) {
   });
 }
 
-std::string text_of(const Vec3& x) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x[0], x[1], x[2]);
-}
-
 void report_problems(const model::Surface& surface, const std::string& name, Diagnostics& diagnostics) {
   using Kind = SurfaceProblem::Kind;
   for (const SurfaceProblem& p : model::problems_of(surface)) {
@@ -216,21 +211,15 @@ void report_problems(const model::Surface& surface, const std::string& name, Dia
   }
 }
 
-bool ends_with(const std::string& name, std::string_view ending) {
-  if (name.size() < ending.size()) return false;
-  return std::equal(ending.begin(), ending.end(), name.end() - static_cast<std::ptrdiff_t>(ending.size()),
-                    [](char e, char c) { return e == std::tolower(static_cast<unsigned char>(c)); });
-}
-
 }  // namespace
 
 model::Surface parse_mesh(std::string_view contents, const std::string& name, double unit, bool two_sided,
                           const Place& asked_at, Diagnostics& diagnostics) {
   const std::int64_t mistakes_before = diagnostics.count();
   SurfaceBuilder builder(name, diagnostics);
-  if (ends_with(name, ".obj")) {
+  if (has_ending(name, ".obj")) {
     read_obj(contents, builder);
-  } else if (!ends_with(name, ".stl")) {
+  } else if (!has_ending(name, ".stl")) {
     diagnostics.add(asked_at,
                     fmt::format("\"{}\" ends in neither .stl nor .obj, the meshes that can be read", name));
   } else if (is_binary_stl(contents)) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 #include <system_error>
@@ -25,6 +26,12 @@ std::string missing_file(const fs::path& file) {
     if (entry->is_regular_file(error)) names.push_back(entry->path().filename().string());
   std::sort(names.begin(), names.end());  // a folder lists its files in any order
   return text + did_you_mean(file.filename().string(), names);
+}
+
+bool has_ending(std::string_view name, std::string_view ending) {
+  if (name.size() < ending.size()) return false;
+  return std::equal(ending.begin(), ending.end(), name.end() - static_cast<std::ptrdiff_t>(ending.size()),
+                    [](char e, char c) { return e == std::tolower(static_cast<unsigned char>(c)); });
 }
 
 Parsed<std::string> read_text_file(const fs::path& file) {
