@@ -111,8 +111,7 @@ class GmshFile {
     if ((*words)[1] != "0") {
       report("binary",
              "binary numbers, which are not read; save the mesh as text: \"gmsh FILE -save -setnumber "
-             "Mesh.Binary 0 "
-             "-o TEXT.msh\", or \"Mesh.Binary = 0;\" in the .geo file");
+             "Mesh.Binary 0 -o TEXT.msh\", or \"Mesh.Binary = 0;\" in the .geo file");
       return false;
     }
     const std::string_view version = words->front();

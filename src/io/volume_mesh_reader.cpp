@@ -25,8 +25,7 @@ std::string nothing_in(const std::string& name, const VolumeMeshRows& rows) {
   if (rows.skipped() == 0) return fmt::format("\"{}\" holds no elements", name);
   return fmt::format(
       "\"{}\" holds no volumes, only {} points, lines or faces; mesh its volume (Gmsh: -3), and where there "
-      "are "
-      "physical groups, put the volume into one, as Gmsh writes nothing else",
+      "are physical groups, put the volume into one, as Gmsh writes nothing else",
       name, rows.skipped());
 }
 
