@@ -15,14 +15,18 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 # Debian's packages are those of its own python3, whatever else is called so.
 python=/usr/bin/python3
 work=$out.work
-mkdir -p "$work"
-"$python" "$root/docs/site/stage.py" "$program" "$work/source"
-"$python" -m sphinx -q -W --keep-going -b html -c "$root/docs/site" -d "$work/doctrees" "$work/source" "$out"
+mkdir -p "$work" "$out"
 
-# The first entry of its list of pages leads back to the others.
+# The C++ reference, beside the rest. The first entry of its list of pages leads back to the others.
 doxygen -l "$work/layout.xml"
 sed -i '0,/<navindex>/s//<navindex><tab type="user" url="..\/index.html" title="All documentation"\/>/' "$work/layout.xml"
 (cat "$root/docs/site/Doxyfile"
  printf '%s\n' "INPUT = $root/include" "STRIP_FROM_PATH = $root/include" "OUTPUT_DIRECTORY = $out" "HTML_OUTPUT = cpp" \
    "HTML_EXTRA_STYLESHEET = $root/docs/site/static/cpp.css" "LAYOUT_FILE = $work/layout.xml") >"$work/Doxyfile"
-doxygen "$work/Doxyfile"
+doxygen "$work/Doxyfile" &
+cpp=$!
+trap 'kill $cpp 2>/dev/null || true' EXIT
+
+"$python" "$root/docs/site/stage.py" "$program" "$work/source"
+"$python" -m sphinx -q -W --keep-going -b html -c "$root/docs/site" -d "$work/doctrees" "$work/source" "$out"
+wait $cpp

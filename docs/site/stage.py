@@ -181,12 +181,41 @@ def parts_of(code: str) -> list[tuple[str, str]]:
     return parts
 
 
+def gallery(stage: Stage) -> str:
+    """Pages in three dimensions, where the package can write them."""
+    import eigengrain
+
+    folder = stage.folder / "extra/pages"
+    folder.mkdir(parents=True, exist_ok=True)
+    bed = eigengrain.load(ROOT / "examples/scenes/packing_10k.yaml")
+    packing = eigengrain.load(ROOT / "examples/scenes/dense_packing.yaml")
+    drum = eigengrain.load(ROOT / "examples/scenes/drum.yaml")
+    drum.run(time=0.2)
+    system = packing.system()
+    shown = [("modes", "The slowest modes of a dense packing", lambda path: eigengrain.page(system, path, mode=system.lowest_modes(6))),
+             ("drum", "A drum that turns, balls by speed", lambda path: eigengrain.page(drum, path, colour="speed")),
+             ("bed", "10,000 settled balls and their contact forces", lambda path: eigengrain.page(bed, path))]
+    lines = []
+    for name, title, write in shown:
+        path = folder / f"{name}.html"
+        try:
+            write(path)
+        except RuntimeError as missing:  # three.js
+            return f"None here: {missing}."
+        stage.written.add(path)
+        lines += [f"## {title}", "", f'<iframe src="pages/{name}.html" title="{title}" loading="lazy"></iframe>', "",
+                  f'<a href="pages/{name}.html">By itself</a>', ""]
+    return "\n".join(lines)
+
+
 def main() -> None:
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     stage = Stage(folder)
     for source in stage.pages:
-        if source.suffix == ".md" and source.name not in ("README.md", "scene-schema.md"):
+        if source.suffix == ".md" and source.name not in ("README.md", "gallery.md", "scene-schema.md"):
             stage.document(source)
+    text = (ROOT / "docs/site/gallery.md").read_text()
+    stage.write("gallery.md", stage.with_links(pathlib.Path("docs/site/gallery.md"), text).replace("{{PAGES}}", gallery(stage)))
     stage.write("scene-schema.md", stage.with_links(pathlib.Path("docs/scene-schema.md"), schema(program)))
     stage.write("commands.md", commands(program))
     for name in SCRIPTS:
