@@ -264,7 +264,7 @@
   $("walls").addEventListener("input", () => { walls.visible = $("walls").checked; wanted = true; });
 
   // The panel stands beside the scene where there is room for both.
-  const beside = () => (window.innerWidth > 900 && $("about").open ? $("about").getBoundingClientRect().right : 0);
+  const beside = () => (window.innerWidth > 700 && $("about").open ? $("about").getBoundingClientRect().right : 0);
   const distance = () => 1.05 / Math.sin((0.5 * Math.PI * camera.fov) / 180) / Math.min(1, (window.innerWidth - beside()) / window.innerHeight);
   const look = (x, y, z) => {
     controls.target.set(0, 0, 0);
