@@ -7,6 +7,8 @@ mapfile -t packages < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$here/packages.
 
 missing=()
 for package in "${packages[@]}"; do
+  # npm may have come with another nodejs than Debian's, beside which Debian's npm cannot be installed.
+  [ "$package" = npm ] && command -v npm >/dev/null && continue
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
 done
 [ "${#missing[@]}" -eq 0 ] && exit 0

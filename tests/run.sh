@@ -2,7 +2,7 @@
 # Installs what is missing, builds, and runs every test. What is built and why: CONTRIBUTING.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-cmake/dependencies.sh tests/peers/packages.txt
+cmake/dependencies.sh tests/peers/packages.txt docs/packages.txt
 # Everything stays on this machine: no network between MPI processes, and root may start them.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 # Tests run beside each other: threads that wait for the others of their program must not hold the cores meanwhile.

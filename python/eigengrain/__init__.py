@@ -13,6 +13,7 @@ from __future__ import annotations
 from ._core import __version__, schema_markdown, set_petsc_options, set_threads, threads
 from .errors import InputError, SolverError
 from .load import load
+from .page import page
 from .results import Balance, Break, Energies, Estimate, Measure, Relaxation, Timestep, Truth
 from .spectrum import Density, Moduli, Modes, Rigidity, Springs
 from .state import Bodies, Contacts, State
@@ -21,6 +22,6 @@ from .system import Elements, StiffnessOperator, System
 __all__ = [
     "Balance", "Bodies", "Break", "Contacts", "Density", "Elements", "Energies", "Estimate", "InputError",
     "Measure", "Moduli", "Modes", "Relaxation", "Rigidity", "SolverError", "Springs", "State", "StiffnessOperator",
-    "System", "Timestep", "Truth", "load", "schema_markdown", "set_petsc_options", "set_threads", "threads",
+    "System", "Timestep", "Truth", "load", "page", "schema_markdown", "set_petsc_options", "set_threads", "threads",
     "__version__",
 ]

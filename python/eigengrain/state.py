@@ -373,7 +373,7 @@ class State:
         from .system import System
         if contacts not in ("acting", "listed"):
             raise InputError(f'contacts: "{contacts}"; write acting or listed')
-        return System(_core.System(self._handle, contacts == "listed"))
+        return System(_core.System(self._handle, contacts == "listed"), self.copy())
 
     def rigidity(self, springs: Literal["all", "sticking", "normal"] = "all", *, with_rattlers: bool = True,
                  shapes: bool = False) -> Rigidity:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import scipy.sparse
@@ -15,6 +15,9 @@ from . import _core
 from .errors import InputError
 from .results import Floats
 from .spectrum import Density, Modes
+
+if TYPE_CHECKING:
+    from .state import State
 
 Integers = NDArray[np.int32]
 
@@ -70,8 +73,9 @@ class System:
     and fixed vectors have none; rows and columns of single fixed components are zero, and `free` leaves them out.
     """
 
-    def __init__(self, system: _core.System) -> None:
+    def __init__(self, system: _core.System, state: State) -> None:
         self._system = system
+        self._state = state  # what it is of, for pictures
 
     def __repr__(self) -> str:
         return f"<eigengrain.System: {self.size} unknowns, {self._system.elements} contacts>"
