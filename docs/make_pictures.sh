@@ -7,7 +7,7 @@ program=${PROGRAM:-build/release/bin/eigengrain}
 export PYTHONPATH=${PYTHONPATH:-$PWD/build/release/lib/python} OMP_WAIT_POLICY=passive
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-for script in timesteps density_of_states moduli bonded_beam; do
+for script in timesteps triaxial jamming moduli bonded_beam; do
   /usr/bin/python3 "examples/scripts/$script.py" "$work"
 done
 /usr/bin/python3 examples/scripts/few_balls.py "$program" "$work"

@@ -17,7 +17,7 @@ import sys
 import program_help
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCRIPTS = ["few_balls", "timesteps", "heap", "density_of_states", "moduli", "bonded_beam"]
+SCRIPTS = ["few_balls", "timesteps", "heap", "triaxial", "jamming", "moduli", "bonded_beam"]
 LANGUAGES = {".hpp": "cpp", ".cpp": "cpp", ".py": "python", ".yaml": "yaml", ".sh": "sh", ".txt": "none"}
 
 

@@ -130,9 +130,8 @@ void add_systems(py::module_& module) {
              [](const SharedSystem& self) { return matrix_of(self, assembly::elasticity_blocks); });
   system.def("viscosity", [](const SharedSystem& self) {
     if (!self->system.has_dashpots()) throw InputError("no contact of this state has dashpots");
-    return matrix_of(self, [](const LinearSystem& of) {
-      return assembly::stiffness_blocks(assembly::viscous_part(of));
-    });
+    return matrix_of(
+        self, [](const LinearSystem& of) { return assembly::stiffness_blocks(assembly::viscous_part(of)); });
   });
   system.def_property_readonly("mass",
                                [](const SharedSystem& self) { return view(self->system.mass, self); });

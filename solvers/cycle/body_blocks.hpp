@@ -82,8 +82,8 @@ class BodyBlocks {
   template <class Sum>
   Sum sum(std::int32_t body, std::span<const double> weight, double mu) const;
   Mat6 scaled(std::int32_t body, const Mat6& block) const;
-  /// What elements of several bodies add, whatever the weights: each is at most the sum of its diagonal blocks times the
-  /// number of its bodies.
+  /// What elements of several bodies add, whatever the weights: each is at most the sum of its diagonal
+  /// blocks times the number of its bodies.
   Mat6 nodal(std::int32_t body, double mu) const;
 
   const assembly::LinearSystem& system_;

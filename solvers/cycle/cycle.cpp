@@ -30,7 +30,7 @@ using assembly::State;
 /// for thousands of steps.
 constexpr double skin_of_radius = 0.05;
 
-/// Of balls; where there are none, of what stands for them: an eighth of the edge of a cube of an element's volume.
+/// Of balls; where there are none, of what stands for them: twice the edge of a cube of an element's volume.
 double mean_radius(const model::Scene& scene) {
   const std::vector<double>& radius = scene.bodies.radius;
   const auto balls = std::ssize(radius) - std::ranges::count(radius, 0.0);
@@ -43,7 +43,7 @@ double mean_radius(const model::Scene& scene) {
     elements += deformable.mesh.element_count();
   }
   for (const double m : scene.bodies.mass) mass += m;
-  return elements > 0 ? std::cbrt(mass / density / elements) / 8 : 0.0;
+  return elements > 0 ? 2 * std::cbrt(mass / density / elements) : 0.0;
 }
 
 /// What bodies do to the walls in a step, by the trapezoidal rule, J.

@@ -66,7 +66,8 @@ std::optional<Trouble> too_fast(const State& state) {
   const double strain = state.model.cell.flow_gradient().norm() * state.dt;
   for (std::size_t i = 0; i < bodies.position.size(); ++i) {
     const Vec3 velocity = fluctuation.of(bodies.velocity[i], bodies.position[i]);
-    const double way = velocity.norm() * state.dt / assembly::size_of(bodies, static_cast<std::int32_t>(i)) + strain;
+    const double way =
+        velocity.norm() * state.dt / assembly::size_of(bodies, static_cast<std::int32_t>(i)) + strain;
     if (way > largest_way) bad.add(way, bodies.identity[i]);
   }
   if (bad.empty()) return std::nullopt;

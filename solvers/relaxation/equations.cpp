@@ -80,9 +80,10 @@ void Equations::adapt_step(double ratio_before, double ratio_now) {
 void Equations::assemble(Vec r) {
   matrix_.begin();
   assembly::assemble_tangent(state_.model, trial(), matrix_);
-  assembly::for_each_nodal_tangent(
-      state_.model, trial(), system_.unknowns,
-      [&](std::int32_t row, std::int32_t column, const Mat3& block) { matrix_.add_block(row, column, block); });
+  assembly::for_each_nodal_tangent(state_.model, trial(), system_.unknowns,
+                                   [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+                                     matrix_.add_block(row, column, block);
+                                   });
   matrix_.end();
   EIGENGRAIN_PETSC(MatDiagonalScale(matrix_.mat(), scale_.get(), scale_.get()));
   Vector shift;

@@ -74,7 +74,8 @@ std::vector<ContactElement> merged(const std::vector<ContactElement>& elements) 
 std::vector<ContactElement> counted_elements(const Model& model, const RigidityOptions& options,
                                              Rigidity& result) {
   if (!model.solids.empty())
-    throw InputError("rigidity counts contacts, and the scene has deformable bodies; leave them out, or ask for modes");
+    throw InputError(
+        "rigidity counts contacts, and the scene has deformable bodies; leave them out, or ask for modes");
   const std::vector<measures::ActingContact> acting = measures::acting_contacts(model);
   const std::vector<bool> rattler = measures::rattlers(model, acting, least_contacts(model, options.springs));
   for (std::int32_t row = 0; row < model.bodies.size(); ++row)

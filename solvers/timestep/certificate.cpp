@@ -33,8 +33,10 @@ double most_contacts(const Unknowns& unknowns, const assembly::StiffnessParts& p
   // A block of a row is met once in the sum of its elements; a row has no more of these than blocks.
   const std::vector<std::int32_t>& offsets = parts.nodal->k.offsets;
   std::int32_t longest = 0;
-  for (std::size_t row = 1; row < offsets.size(); ++row) longest = std::max(longest, offsets[row] - offsets[row - 1]);
-  return most + 4 * longest;  // a tetrahedron has four integration points at most, a brick twice as many as nodes share
+  for (std::size_t row = 1; row < offsets.size(); ++row)
+    longest = std::max(longest, offsets[row] - offsets[row - 1]);
+  return most + 4 * longest;  // a tetrahedron has four integration points at most, a brick twice as many as
+                              // nodes share
 }
 
 /// What the entries of S K S may have lost of its eigenvalues. Each is a sum over c contacts of products of

@@ -21,8 +21,7 @@ namespace eigengrain::timestep {
 /// scale  [unknowns.size()] the diagonal of S
 /// Throws SolverError where the factor does not fit into the memory that is free; it is asked before it is
 /// taken.
-std::optional<double> prove_below(const assembly::Unknowns& unknowns,
-                                  const assembly::StiffnessParts& parts,
+std::optional<double> prove_below(const assembly::Unknowns& unknowns, const assembly::StiffnessParts& parts,
                                   std::span<const double> scale, double sigma);
 
 }  // namespace eigengrain::timestep

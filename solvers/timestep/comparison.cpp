@@ -11,7 +11,8 @@ namespace {
 
 void judge(const Estimator& estimator, const Question& question, Comparison& result) {
   if (!question.system.nodal.empty() && !estimator.knows_nodes) {
-    result.left_out.push_back({std::string(estimator.name), "it knows contacts alone, and the scene has deformable bodies"});
+    result.left_out.push_back(
+        {std::string(estimator.name), "it knows contacts alone, and the scene has deformable bodies"});
     return;
   }
   const Stopwatch watch;

@@ -11,7 +11,8 @@ namespace eigengrain::timestep {
 using assembly::Unknowns;
 using contact::ContactElement;
 
-SparseMatrix shifted_stiffness(const Unknowns& unknowns, const assembly::StiffnessParts& parts, std::span<const double> scale, double shift, double factor) {
+SparseMatrix shifted_stiffness(const Unknowns& unknowns, const assembly::StiffnessParts& parts,
+                               std::span<const double> scale, double shift, double factor) {
   std::vector<Eigen::Triplet<double, SuiteSparse_long>> entries;
   entries.reserve(parts.contacts.size() * 78 + scale.size());
   for (std::size_t k = 0; k < scale.size(); ++k) entries.emplace_back(k, k, shift);
@@ -22,9 +23,9 @@ SparseMatrix shifted_stiffness(const Unknowns& unknowns, const assembly::Stiffne
         const std::int64_t r = std::int64_t{3} * row + i;
         const std::int64_t c = std::int64_t{3} * column + j;
         if (r >= c)
-          entries.emplace_back(r, c,
-                               factor * scale[static_cast<std::size_t>(r)] * block(i, j) *
-                                   scale[static_cast<std::size_t>(c)]);
+          entries.emplace_back(
+              r, c,
+              factor * scale[static_cast<std::size_t>(r)] * block(i, j) * scale[static_cast<std::size_t>(c)]);
       }
   };
   for (const ContactElement& element : parts.contacts) assembly::scatter(element, unknowns, add);

@@ -16,9 +16,8 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, SuiteSparse_lo
 /// The lower triangle of shift + factor · S K S.
 ///
 /// scale  [unknowns.size()] the diagonal of S
-SparseMatrix shifted_stiffness(const assembly::Unknowns& unknowns,
-                               const assembly::StiffnessParts& parts, std::span<const double> scale,
-                               double shift, double factor);
+SparseMatrix shifted_stiffness(const assembly::Unknowns& unknowns, const assembly::StiffnessParts& parts,
+                               std::span<const double> scale, double shift, double factor);
 
 /// A supernodal factor whose size is known before it is computed.
 class SparseFactor : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {

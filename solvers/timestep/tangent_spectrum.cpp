@@ -47,9 +47,10 @@ petsc::Matrix scaled_tangent(const assembly::Model& model, const assembly::Linea
   blocks.begin();
   const assembly::Trial trial{model.bodies.position, still, still, 1.0, model.bodies.orientation};
   assembly::assemble_tangent(model, trial, blocks, slip);
-  assembly::for_each_nodal_tangent(
-      model, trial, system.unknowns,
-      [&](std::int32_t row, std::int32_t column, const Mat3& block) { blocks.add_block(row, column, block); });
+  assembly::for_each_nodal_tangent(model, trial, system.unknowns,
+                                   [&](std::int32_t row, std::int32_t column, const Mat3& block) {
+                                     blocks.add_block(row, column, block);
+                                   });
   blocks.end();
   return scaled(blocks, system);
 }

@@ -54,7 +54,6 @@ struct Problem {
 
   /// What proves steps without the whole system.
   cycle::StepProver prover() const { return cycle::StepProver(system, largest_damping); }
-
 };
 
 Found search(const Problem& problem, const TruthOptions& options) {
@@ -94,7 +93,8 @@ bool prove(const Problem& problem, Found& found) {
   const auto below = [&](const assembly::LinearSystem& of) {
     return prove_below(of.unknowns, of.parts(), problem.scale, wanted);
   };
-  const auto sigma = problem.dashpots ? below(assembly::with_viscosity(problem.system, mu)) : below(problem.system);
+  const auto sigma =
+      problem.dashpots ? below(assembly::with_viscosity(problem.system, mu)) : below(problem.system);
   if (!sigma) return false;
   // λ(μ), the largest eigenvalue of A(μ), is less than σ. At μ' = σ/μ it is less than μ'²: with K >= 0
   // A(μ') <= (μ'/μ) A(μ).

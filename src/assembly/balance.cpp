@@ -49,7 +49,8 @@ void add_elements(const Model& model, Survey& result) {
       double weight = 0;
       for (int q = 0; q < solid->elements.points(); ++q) weight += solid->elements.weight(e, q);
       for (std::size_t i = 0; i < n; ++i) {
-        Touch& touch = result.touch[static_cast<std::size_t>(solid->rows[n * static_cast<std::size_t>(e) + i])];
+        Touch& touch =
+            result.touch[static_cast<std::size_t>(solid->rows[n * static_cast<std::size_t>(e) + i])];
         result.force += force[i].norm();
         ++touch.contacts;
         for (std::size_t j = 0; j < n; ++j) {

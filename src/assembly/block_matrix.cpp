@@ -24,7 +24,8 @@ Eigen::Map<RowMajor3> block_at(BlockMatrix& matrix, std::size_t index) {
 void require_contacts_alone(const LinearSystem& system) {
   if (!system.nodal.empty())
     throw InputError(
-        "B and D are those of contacts, and the scene has deformable bodies, so K is not BᵀDB; ask for K and M alone");
+        "B and D are those of contacts, and the scene has deformable bodies, so K is not BᵀDB; ask for K and "
+        "M alone");
 }
 
 }  // namespace
@@ -41,7 +42,8 @@ BlockMatrix stiffness_blocks(const LinearSystem& system) {
     for (const std::int32_t first : {e.a, e.b})
       for (const std::int32_t second : {e.a, e.b})
         if (first != contact::no_body && second != contact::no_body) couple(first, second);
-  for_each_block(system.nodal.k, [&](std::int32_t row, std::int32_t column, const Mat3&) { rows[row].push_back(column); });
+  for_each_block(system.nodal.k,
+                 [&](std::int32_t row, std::int32_t column, const Mat3&) { rows[row].push_back(column); });
   BlockMatrix matrix = with_pattern(std::move(rows), unknowns.blocks());
   for_each_block(system.nodal.k, [&](std::int32_t row, std::int32_t column, const Mat3& block) {
     if (row >= column) add_to(matrix, row, column, block);

@@ -120,8 +120,7 @@ void for_each_skin_corner(const Model& model, const Group& group, const Visit& v
       const std::int32_t facet = group.pairs[c].b;
       if (!model.facets.deforms(facet)) continue;
       const auto& vertex = model.facets.facet[static_cast<std::size_t>(facet)].vertex;
-      for (std::size_t k = 0; k < 3; ++k)
-        visit(c, k, model.facets.body[static_cast<std::size_t>(vertex[k])]);
+      for (std::size_t k = 0; k < 3; ++k) visit(c, k, model.facets.body[static_cast<std::size_t>(vertex[k])]);
     }
 }
 
@@ -208,7 +207,8 @@ ContactForceSum::ContactForceSum(const Model& model, bool turns) : turns_(turns)
   const std::vector<double>& radius = model.bodies.radius;
   if (!places_.empty()) {
     const auto balls = std::ssize(radius) - std::ranges::count(radius, 0.0);  // nodes have no radius
-    margin_ = margin_of_radius * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(balls);
+    margin_ =
+        margin_of_radius * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(balls);
   }
 }
 

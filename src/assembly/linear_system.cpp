@@ -63,7 +63,10 @@ LinearSystem with_viscosity(const LinearSystem& system, double mu) {
 std::vector<contact::ContactElement> viscous_elements(const LinearSystem& system) {
   std::vector<contact::ContactElement> elements = system.elements;
   for (std::size_t e = 0; e < elements.size(); ++e)
-    elements[e].stiffness = system.damping.empty() ? contact::ContactStiffness{} : contact::ContactStiffness{.normal = system.damping[e].normal, .shear = system.damping[e].shear};
+    elements[e].stiffness =
+        system.damping.empty()
+            ? contact::ContactStiffness{}
+            : contact::ContactStiffness{.normal = system.damping[e].normal, .shear = system.damping[e].shear};
   return elements;
 }
 

@@ -1,8 +1,8 @@
 #include "eigengrain/assembly/nodal_stiffness.hpp"
 
 #include "eigengrain/assembly/acting.hpp"
-#include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/clump_members.hpp"
+#include "eigengrain/assembly/forces.hpp"
 #include "eigengrain/assembly/scatter.hpp"
 #include "eigengrain/contact/consistent_tangent.hpp"
 
@@ -80,17 +80,17 @@ class Adder {
 
   void add(std::int32_t row_body, std::int32_t column_body, const Mat6& block, int moving) {
     const Mat6 own = unknowns_.has_axes() ? unknowns_.in_own_axes(row_body, column_body, block) : block;
-    scatter_pair(row_body, column_body, own, unknowns_,
-                 [&](std::int32_t row, std::int32_t column, const Mat3& part) {
-                   add_to(matrix_, row, column, part);
-                 });
+    scatter_pair(
+        row_body, column_body, own, unknowns_,
+        [&](std::int32_t row, std::int32_t column, const Mat3& part) { add_to(matrix_, row, column, part); });
     if (row_body == column_body) bound_[static_cast<std::size_t>(row_body)] += moving * block;
   }
   void add(const SkinBlocks& blocks) {
     int moving = 0;
     for (int i = 0; i < SkinBlocks::bodies; ++i) moving += can_move(unknowns_, blocks.body(i)) ? 1 : 0;
     for (int i = 0; i < SkinBlocks::bodies; ++i)
-      for (int j = 0; j < SkinBlocks::bodies; ++j) add(blocks.body(i), blocks.body(j), blocks.block(i, j), moving);
+      for (int j = 0; j < SkinBlocks::bodies; ++j)
+        add(blocks.body(i), blocks.body(j), blocks.block(i, j), moving);
   }
 
  private:
@@ -148,7 +148,8 @@ NodalStiffness nodal_stiffness(const Model& model, Listed which, const Unknowns&
   const auto couple = [&](std::int32_t row_body, std::int32_t column_body) {
     for (const std::int32_t row : unknowns.of(row_body))
       for (const std::int32_t column : unknowns.of(column_body))
-        if (row != Unknowns::none && column != Unknowns::none) rows[static_cast<std::size_t>(row)].push_back(column);
+        if (row != Unknowns::none && column != Unknowns::none)
+          rows[static_cast<std::size_t>(row)].push_back(column);
   };
   for (const auto& solid : model.solids) {
     const auto n = static_cast<std::size_t>(solid->elements.nodes());
@@ -220,9 +221,10 @@ void for_each_nodal_tangent(const Model& model, const Trial& trial, const Unknow
       for (int i = 0; i < SkinBlocks::bodies; ++i)
         for (int j = 0; j < SkinBlocks::bodies; ++j) {
           const Mat6 block = blocks.block(i, j);
-          scatter_pair(blocks.body(i), blocks.body(j),
-                       unknowns.has_axes() ? unknowns.in_own_axes(blocks.body(i), blocks.body(j), block) : block,
-                       unknowns, add);
+          scatter_pair(
+              blocks.body(i), blocks.body(j),
+              unknowns.has_axes() ? unknowns.in_own_axes(blocks.body(i), blocks.body(j), block) : block,
+              unknowns, add);
         }
     }
   });

@@ -283,7 +283,8 @@ void add_nodal(const BlockMatrix& a, const std::vector<double>& scale, std::span
     const auto r = static_cast<std::size_t>(row);
     if (a.offsets[r] == a.offsets[r + 1]) return;
     Vec3 sum = Vec3::Zero();
-    for (auto k = static_cast<std::size_t>(a.offsets[r]); k < static_cast<std::size_t>(a.offsets[r + 1]); ++k) {
+    for (auto k = static_cast<std::size_t>(a.offsets[r]); k < static_cast<std::size_t>(a.offsets[r + 1]);
+         ++k) {
       const auto j = 3 * static_cast<std::size_t>(a.columns[k]);
       sum += Eigen::Map<const RowMajor3>(&a.values[9 * k]) *
              Vec3(scale[j] * x[j], scale[j + 1] * x[j + 1], scale[j + 2] * x[j + 2]);

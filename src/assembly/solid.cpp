@@ -28,8 +28,8 @@ std::vector<std::int32_t> rows_of(const model::Deformable& deformable, const mod
     if (node >= 0 && node < std::ssize(row)) row[at(node)] = i;
   }
   if (std::ranges::find(row, -1) != row.end())
-    throw InputError(fmt::format("{}: {} nodes, but the bodies from identity {} on are fewer", deformable.name,
-                                 row.size(), deformable.first_node));
+    throw InputError(fmt::format("{}: {} nodes, but the bodies from identity {} on are fewer",
+                                 deformable.name, row.size(), deformable.first_node));
   return row;
 }
 
@@ -82,7 +82,8 @@ model::Bodies nodes_of(const model::Deformable& deformable) {
     nodes.identity.push_back(deformable.first_node + static_cast<std::int64_t>(i));
   nodes.radius.assign(count, 0.0);
   // What it would turn against must not be zero.
-  for (const double mass : nodes.mass) nodes.inertia.push_back(mass * std::pow(mass / deformable.density, 2.0 / 3));
+  for (const double mass : nodes.mass)
+    nodes.inertia.push_back(mass * std::pow(mass / deformable.density, 2.0 / 3));
   nodes.material.assign(count, deformable.material);
   model::FixedComponents never_turns;
   for (int k = 3; k < 6; ++k) never_turns.fix(k);
@@ -109,7 +110,8 @@ void set_solids(Model& model, std::span<const model::Deformable> deformables) {
       solid.first_facet = facet;
       solid.first_vertex = vertex;
       std::ranges::copy(solid.skin_row, model.facets.body.begin() + vertex);
-      model.surface_places.push_back({.start = model.surfaces[s].centre, .pose = {.centre = model.surfaces[s].centre}});
+      model.surface_places.push_back(
+          {.start = model.surfaces[s].centre, .pose = {.centre = model.surfaces[s].centre}});
     }
     facet += static_cast<std::int32_t>(model.surfaces[s].triangles.size());
     vertex += static_cast<std::int32_t>(model.surfaces[s].vertices.size());
@@ -131,7 +133,8 @@ void renew_skins(Model& model) {
   if (model.solids.empty()) return;
   place_skins(model.solids, model.bodies.position, model.facets);
   const std::size_t rigid = model.surfaces.size() - model.solids.size();
-  model.facet_trees.erase(model.facet_trees.begin() + static_cast<std::ptrdiff_t>(rigid), model.facet_trees.end());
+  model.facet_trees.erase(model.facet_trees.begin() + static_cast<std::ptrdiff_t>(rigid),
+                          model.facet_trees.end());
   for (const auto& solid : model.solids)
     model.facet_trees.emplace_back(
         std::span(model.facets.facet).subspan(at(solid->first_facet), solid->neighbours.size()),
@@ -165,7 +168,8 @@ void SolidForces::add(const Solids& solids, std::span<const Vec3> position, std:
 void check_solids(const Solids& solids, std::span<const Vec3> position, std::span<const Vec3> force) {
   for (const auto& shared : solids) {
     const Solid& solid = *shared;
-    const auto bad = std::ranges::find_if(solid.row, [&](std::int32_t row) { return force[at(row)].hasNaN(); });
+    const auto bad =
+        std::ranges::find_if(solid.row, [&](std::int32_t row) { return force[at(row)].hasNaN(); });
     if (bad == solid.row.end()) continue;
     const auto n = static_cast<std::size_t>(solid.elements.nodes());
     std::array<Vec3, fem::most_nodes> x;
@@ -175,10 +179,11 @@ void check_solids(const Solids& solids, std::span<const Vec3> position, std::spa
       for (int q = 0; q < solid.elements.points(); ++q)
         least = std::min(least, solid.elements.deformation(e, q, std::span(x).first(n)).determinant());
       if (least > 0) continue;
-      throw SolverError(fmt::format(
-          "{}: element {} near ({:.4g}, {:.4g}, {:.4g}) m was pressed inside out (volume times {:.3g}): a softer "
-          "start, smaller steps or a stiffer or finer mesh is needed",
-          solid.deformable.name, solid.number[at(e)], x[0].x(), x[0].y(), x[0].z(), least));
+      throw SolverError(
+          fmt::format("{}: element {} near ({:.4g}, {:.4g}, {:.4g}) m was pressed inside out (volume times "
+                      "{:.3g}): a softer "
+                      "start, smaller steps or a stiffer or finer mesh is needed",
+                      solid.deformable.name, solid.number[at(e)], x[0].x(), x[0].y(), x[0].z(), least));
     }
     const Vec3& place = position[at(*bad)];
     throw SolverError(fmt::format("{}: the force on its node at ({:.4g}, {:.4g}, {:.4g}) m is not a number",
@@ -192,14 +197,14 @@ double elastic_energy_of(const Solids& solids, std::span<const Vec3> position) {
     const Solid& solid = *shared;
     const auto n = static_cast<std::size_t>(solid.elements.nodes());
     std::vector<double> parts(at((solid.elements.size() + chunk_size - 1) / chunk_size), 0.0);
-    for_chunks(solid.elements.size(), chunk_size,
-               [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
-                 std::array<Vec3, fem::most_nodes> x;
-                 for (auto e = static_cast<std::int32_t>(begin); e < end; ++e) {
-                   solid.gather(e, position, x);
-                   parts[at(chunk)] += solid.elements.energy(solid.deformable.solid, e, std::span(x).first(n));
-                 }
-               });
+    for_chunks(
+        solid.elements.size(), chunk_size, [&](std::int64_t begin, std::int64_t end, std::int64_t chunk) {
+          std::array<Vec3, fem::most_nodes> x;
+          for (auto e = static_cast<std::int32_t>(begin); e < end; ++e) {
+            solid.gather(e, position, x);
+            parts[at(chunk)] += solid.elements.energy(solid.deformable.solid, e, std::span(x).first(n));
+          }
+        });
     for (const double part : parts) energy += part;
   }
   return energy;

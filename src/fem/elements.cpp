@@ -33,8 +33,7 @@ Shape tet4_shape(const Vec3& r) {
 
 /// Corners (2 L_i - 1) L_i, middles of edges 4 L_i L_j.
 Shape tet10_shape(const Vec3& r) {
-  static constexpr std::array<std::array<int, 2>, 6> edges{
-      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  static constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
   const Shape linear = tet4_shape(r);
   Shape shape;
   for (int i = 0; i < 4; ++i) {
@@ -52,22 +51,15 @@ Shape tet10_shape(const Vec3& r) {
 }
 
 Shape hex8_shape(const Vec3& r) {
-  static constexpr std::array<std::array<double, 3>, 8> corners{{{-1, -1, -1},
-                                                                 {1, -1, -1},
-                                                                 {1, 1, -1},
-                                                                 {-1, 1, -1},
-                                                                 {-1, -1, 1},
-                                                                 {1, -1, 1},
-                                                                 {1, 1, 1},
-                                                                 {-1, 1, 1}}};
+  static constexpr std::array<std::array<double, 3>, 8> corners{
+      {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
   Shape shape;
   for (int i = 0; i < 8; ++i) {
     const auto& c = corners[static_cast<std::size_t>(i)];
     const Vec3 part(1 + c[0] * r[0], 1 + c[1] * r[1], 1 + c[2] * r[2]);
     shape.value[i] = part.prod() / 8;
     for (int k = 0; k < 3; ++k)
-      shape.derivative(i, k) =
-          c[static_cast<std::size_t>(k)] * part[(k + 1) % 3] * part[(k + 2) % 3] / 8;
+      shape.derivative(i, k) = c[static_cast<std::size_t>(k)] * part[(k + 1) % 3] * part[(k + 2) % 3] / 8;
   }
   return shape;
 }
@@ -112,15 +104,16 @@ std::vector<Point> points_of(ElementKind kind) {
   return {{Vec3::Constant(0.25), 1.0 / 6}};
 }
 
-/// For masses, exact for products of two shape functions in undistorted elements: of tetrahedra the collapsed rule of
-/// Gauss and Jacobi would do; here the cube's points are collapsed with their own Jacobian, which is a polynomial too.
+/// For masses, exact for products of two shape functions in undistorted elements: of tetrahedra the collapsed
+/// rule of Gauss and Jacobi would do; here the cube's points are collapsed with their own Jacobian, which is
+/// a polynomial too.
 std::vector<Point> mass_points_of(ElementKind kind) {
   static const double far = std::sqrt((3 + 2 * std::sqrt(1.2)) / 7);
   static const double near = std::sqrt((3 - 2 * std::sqrt(1.2)) / 7);
   static const double of_far = (18 - std::sqrt(30.0)) / 36;
   static const double of_near = (18 + std::sqrt(30.0)) / 36;
-  std::vector<Point> points = gauss_cube(std::array{-far, -near, near, far},
-                                         std::array{of_far, of_near, of_near, of_far});
+  std::vector<Point> points =
+      gauss_cube(std::array{-far, -near, near, far}, std::array{of_far, of_near, of_near, of_far});
   if (kind == ElementKind::hex8) return points;
   for (Point& point : points) {
     const Vec3 s = 0.5 * (point.place + Vec3::Ones());
@@ -215,8 +208,7 @@ Mat3 Elements::mean_stress(const model::ElasticSolid& solid, std::int32_t e, std
   double volume = 0;
   for (int q = 0; q < points_; ++q) {
     const Mat3 F = deformation(e, q, x);
-    const double now =
-        weight(e, q) * (solid.model == model::ElasticModel::linear ? 1.0 : F.determinant());
+    const double now = weight(e, q) * (solid.model == model::ElasticModel::linear ? 1.0 : F.determinant());
     sum += now * cauchy_stress(solid, F);
     volume += now;
   }

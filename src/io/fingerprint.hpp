@@ -10,8 +10,8 @@
 
 namespace eigengrain::io {
 
-/// A number that changes with columns of numbers, as the vertices and triangles of a surface (FNV-1a over their bytes), by which a
-/// state knows whether the file of a mesh is still the one that its contacts name.
+/// A number that changes with columns of numbers, as the vertices and triangles of a surface (FNV-1a over
+/// their bytes), by which a state knows whether the file of a mesh is still the one that its contacts name.
 template <class... Columns>
 std::int64_t fingerprint_of(const Columns&... columns) {
   std::uint64_t hash = 14695981039346656037U;

@@ -27,8 +27,8 @@ std::optional<model::Mesh> read_mesh_file(const Section& mesh, const std::filesy
   const auto unit = mesh.text("unit");
   if (!name || !unit) return std::nullopt;
   const std::int64_t mistakes = mesh.diagnostics().count();
-  model::Mesh result = read_volume_mesh((folder / *name).lexically_normal(), units.at(*unit), mesh.place("file"),
-                                        mesh.diagnostics());
+  model::Mesh result = read_volume_mesh((folder / *name).lexically_normal(), units.at(*unit),
+                                        mesh.place("file"), mesh.diagnostics());
   if (result.elements.empty() || mesh.diagnostics().count() > mistakes) return std::nullopt;
   return result;
 }
@@ -44,7 +44,8 @@ std::optional<model::Mesh> read_block(const Section& block) {
   const auto element = block.text("element");
   if (!low || !high || !cells || !element) return std::nullopt;
   if (cells->size() != 3) {
-    block.report("cells", fmt::format("{} numbers; one for each of x, y and z is wanted, e.g. [4, 4, 2]", cells->size()));
+    block.report("cells", fmt::format("{} numbers; one for each of x, y and z is wanted, e.g. [4, 4, 2]",
+                                      cells->size()));
     return std::nullopt;
   }
   constexpr double most_cells = 1e8;
@@ -56,7 +57,8 @@ std::optional<model::Mesh> read_block(const Section& block) {
   }
   for (int k = 0; k < 3; ++k) {
     if ((*low)[k] < (*high)[k]) continue;
-    block.report("max", fmt::format("{0} = {1} m is not above the {0} = {2} m of min", "xyz"[k], (*high)[k], (*low)[k]));
+    block.report("max", fmt::format("{0} = {1} m is not above the {0} = {2} m of min", "xyz"[k], (*high)[k],
+                                    (*low)[k]));
     return std::nullopt;
   }
   return model::box_mesh(*low, *high - *low,
@@ -69,8 +71,7 @@ std::optional<model::Mesh> read_block(const Section& block) {
 std::optional<double> modulus(const Section& entry, std::string_view key, std::optional<double> of_material,
                               const std::string& material) {
   if (entry.has(key)) return entry.quantity(key);
-  if (!of_material)
-    entry.report_missing(key, fmt::format("the material \"{}\" has none either", material));
+  if (!of_material) entry.report_missing(key, fmt::format(", and the material \"{}\" has none", material));
   return of_material;
 }
 
@@ -95,9 +96,10 @@ std::optional<Shape> read_part(const Section& part, const model::Mesh& mesh) {
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
-  part.report(fmt::format("no node lies in this region; the body reaches from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, "
-                          "{:.4g}, {:.4g}) m, and boxes leave out their upper sides",
-                          low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
+  part.report(
+      fmt::format("no node lies in this region; the body reaches from ({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, "
+                  "{:.4g}, {:.4g}) m, and boxes leave out their upper sides",
+                  low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
   return std::nullopt;
 }
 
@@ -133,7 +135,9 @@ void read_loads(const Section& entry, const model::Mesh& mesh, Nodes& nodes) {
     std::vector<double> share(mesh.nodes.size(), 0.0);
     double whole = 0;
     for (const model::Triangle& triangle : skin.triangles) {
-      const auto at = [&](std::size_t k) -> const Vec3& { return skin.vertices[static_cast<std::size_t>(triangle[k])]; };
+      const auto at = [&](std::size_t k) -> const Vec3& {
+        return skin.vertices[static_cast<std::size_t>(triangle[k])];
+      };
       if (!in_shape(*shape, at(0)) || !in_shape(*shape, at(1)) || !in_shape(*shape, at(2))) continue;
       const double area = 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
       whole += area;
@@ -171,9 +175,11 @@ void append_nodes(SceneDraft& draft) {
 void read_deformables(const Section& root, SceneDraft& draft) {
   const std::vector<Section> entries = root.sections("deformables");
   if (!entries.empty() && draft.scene.cell.any())
-    root.report("deformables", "in a cell that repeats, deformable bodies are not possible; leave out `periodic` or them");
+    root.report("deformables",
+                "in a cell that repeats, deformable bodies are not possible; leave out `periodic` or them");
   if (!entries.empty() && draft.planar)
-    root.report("deformables", "in a planar scene, deformable bodies are not possible; leave out `planar` or them");
+    root.report("deformables",
+                "in a planar scene, deformable bodies are not possible; leave out `planar` or them");
   std::size_t number = 0;
   for (const Section& entry : entries) {
     entry.check_keys();
@@ -186,18 +192,21 @@ void read_deformables(const Section& root, SceneDraft& draft) {
     }
     const auto mesh_section = entry.section("mesh");
     const auto block_section = entry.section("block");
-    auto mesh = mesh_section ? read_mesh_file(*mesh_section, draft.folder)
+    auto mesh = mesh_section    ? read_mesh_file(*mesh_section, draft.folder)
                 : block_section ? read_block(*block_section)
                                 : std::nullopt;
     const auto move = entry.vector("move");
     const auto velocity = entry.vector("velocity");
     const auto model = entry.text("model");
-    if (std::ranges::any_of(draft.scene.deformables, [&](const Deformable& d) { return d.name == deformable.name; }))
-      entry.report("name", fmt::format("\"{}\" is the name of another body; choose another one", deformable.name));
+    if (std::ranges::any_of(draft.scene.deformables,
+                            [&](const Deformable& d) { return d.name == deformable.name; }))
+      entry.report("name",
+                   fmt::format("\"{}\" is the name of another body; choose another one", deformable.name));
     if (deformable.material < 0 || !mesh || !move || !velocity || !model) continue;
     const model::Material& material = draft.scene.materials[static_cast<std::size_t>(deformable.material)];
     if (material.density == 0)
-      entry.report("material", fmt::format("\"{}\" has no density; add e.g. \"density: 1100 kg/m3\" to it", material.name));
+      entry.report("material", fmt::format("\"{}\" has no density; add e.g. \"density: 1100 kg/m3\" to it",
+                                           material.name));
     const auto young = modulus(entry, "young", material.young, material.name);
     const auto poisson = modulus(entry, "poisson", material.poisson, material.name);
     const auto damping = entry.has("damping") ? entry.quantity("damping")

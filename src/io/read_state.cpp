@@ -114,7 +114,8 @@ void read_bodies(const h5::File& hdf5, assembly::State& state) {
     // Written so that not-a-number fails too. Rounding leaves some ulps.
     if (!bodies.orientation.empty() && !(std::abs(bodies.orientation[i].squaredNorm() - 1) < 1e-12))
       throw h5::Error(fmt::format("the orientation of ball {} is no unit quaternion", bodies.identity[i]));
-    if (!(bodies.radius[i] > 0) || !std::isfinite(bodies.radius[i]))
+    const bool may_be_node = bodies.radius[i] == 0 && hdf5.has(layout::deformables);
+    if ((!(bodies.radius[i] > 0) && !may_be_node) || !std::isfinite(bodies.radius[i]))
       throw h5::Error(
           fmt::format("the radius of ball {} is {} m, not positive", bodies.identity[i], bodies.radius[i]));
   }
@@ -209,17 +210,19 @@ void refuse_changed_meshes(const h5::File& hdf5, const model::Scene& stored, con
 void find_nodes(const h5::File& hdf5, const fs::path& file, std::vector<model::Deformable>& deformables) {
   const std::size_t there = hdf5.has(layout::deformables) ? hdf5.rows(layout::deformable_first_node) : 0;
   if (there != deformables.size())
-    refuse(file, fmt::format("deformables: {} where the state has {}; keep their number, or start from the scene",
-                             deformables.size(), there));
+    refuse(file,
+           fmt::format("deformables: {} where the state has {}; keep their number, or start from the scene",
+                       deformables.size(), there));
   if (there == 0) return;
   const auto first_node = hdf5.read<std::int64_t>(layout::deformable_first_node, there);
   const auto then = hdf5.read<std::int64_t>(layout::deformable_fingerprint, there);
   for (std::size_t d = 0; d < there; ++d) {
     deformables[d].first_node = first_node[d];
     if (fingerprint(deformables[d].mesh) != then[d])
-      refuse(file, fmt::format("{}: its mesh is another one than when the state was written; put the file back, or "
-                               "start from the scene",
-                               deformables[d].name));
+      refuse(file,
+             fmt::format("{}: its mesh is another one than when the state was written; put the file back, or "
+                         "start from the scene",
+                         deformables[d].name));
   }
 }
 

@@ -10,8 +10,9 @@ std::vector<KeyDescription> deformable_keys() {
        .kind = section_list,
        .fallback = "[]",
        .example = "[{mesh: {file: block.msh, unit: mm}, material: rubber, young: 1 MPa, poisson: 0.4}]",
-       .description = "elastic bodies of finite elements. Their nodes are bodies without size, numbered behind all "
-                      "balls; balls touch their skin, their nodes touch planes"},
+       .description =
+           "elastic bodies of finite elements. Their nodes are bodies without size, numbered behind all "
+           "balls; balls touch their skin, their nodes touch planes"},
       {.path = "deformables[].name",
        .kind = text,
        .example = "block",
@@ -24,9 +25,11 @@ std::vector<KeyDescription> deformable_keys() {
        .kind = text,
        .required = true,
        .example = "block.msh",
-       .description = "Gmsh (.msh, 2.2 or 4.1, text), Abaqus or CalculiX (.inp) or VTK (.vtu, text), by its ending, with "
-                      "volume elements of one kind: tetrahedra of 4 or 10 nodes or bricks of 8; the path is relative to "
-                      "the scene file"},
+       .description =
+           "Gmsh (.msh, 2.2 or 4.1, text), Abaqus or CalculiX (.inp) or VTK (.vtu, text), by its ending, "
+           "with "
+           "volume elements of one kind: tetrahedra of 4 or 10 nodes or bricks of 8; the path is relative to "
+           "the scene file"},
       {.path = "deformables[].mesh.unit",
        .kind = word,
        .required = true,
@@ -71,7 +74,8 @@ std::vector<KeyDescription> deformable_keys() {
        .fallback = "corotational",
        .words = {"linear", "corotational", "saint-venant-kirchhoff", "neo-hookean"},
        .example = "neo-hookean",
-       .description = "how stress follows from deformation. `linear` is for small rotations only, `corotational` for any "
+       .description = "how stress follows from deformation. `linear` is for small rotations only, "
+                      "`corotational` for any "
                       "rotation and small strains, `neo-hookean` for large strains"},
       {.path = "deformables[].young",
        .kind = quantity,
@@ -127,8 +131,9 @@ std::vector<KeyDescription> deformable_keys() {
        .unit = "N",
        .required = true,
        .example = "[0, 0, -10]",
-       .description = "in all, spread evenly over the area of the triangles of the skin whose corners are all in the "
-                      "region"},
+       .description =
+           "in all, spread evenly over the area of the triangles of the skin whose corners are all in the "
+           "region"},
   };
   for (const char* section : {"deformables[].fix[]", "deformables[].loads[]"}) {
     const std::vector<KeyDescription> shapes = region_keys(section, "a box");

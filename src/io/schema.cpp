@@ -49,7 +49,8 @@ std::vector<KeyDescription> all_keys() {
   for (const contact::LawDescription& bond : contact::bond_descriptions())
     for (const contact::ParameterDescription& parameter : bond.parameters)
       keys.push_back(law_key("contacts[].bond", bond, parameter));
-  for (const auto& more : {ball_keys(), clump_keys(), deformable_keys(), wall_keys(), run_keys(), stage_keys(), output_keys()})
+  for (const auto& more :
+       {ball_keys(), clump_keys(), deformable_keys(), wall_keys(), run_keys(), stage_keys(), output_keys()})
     keys.insert(keys.end(), more.begin(), more.end());
   return keys;
 }

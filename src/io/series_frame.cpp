@@ -74,7 +74,8 @@ std::vector<Tensor> stresses(const assembly::Model& model) {
 
 void write_frame(const std::filesystem::path& file, const assembly::State& state, bool stress) {
   const model::Bodies& bodies = state.model.bodies;
-  const std::vector<std::int32_t> rows = rows_by_identity(bodies, Rows::balls);  // nodes are in frames of their own
+  const std::vector<std::int32_t> rows =
+      rows_by_identity(bodies, Rows::balls);  // nodes are in frames of their own
   const std::size_t count = rows.size();
   AppendedArrays arrays;
   const auto column = [&](std::string_view name, const auto& values) {
@@ -151,8 +152,8 @@ void write_solid_frame(const std::filesystem::path& file, const assembly::State&
   const auto given = [&](std::string_view name, const auto& values) {
     return arrays.add(name, values.size(), [from = &values] { return *from; });
   };
-  std::string xml = fmt::format("{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", frame_head, points.size(),
-                                types.size());
+  std::string xml = fmt::format("{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", frame_head,
+                                points.size(), types.size());
   xml += "<PointData Vectors=\"displacement\">\n" + given("displacement", displacement) +
          given("velocity", velocity) + given("identity", identity) + "</PointData>\n";
   xml += "<CellData Scalars=\"von_mises\">\n" + given("von_mises", mises) + given("stress", stress) +

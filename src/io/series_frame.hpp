@@ -17,8 +17,9 @@ void write_frame(const std::filesystem::path& file, const assembly::State& state
 /// The triangles of all surfaces where they are.
 void write_surface_frame(const std::filesystem::path& file, const assembly::Model& model);
 
-/// The elements of all deformable bodies where they are: of nodes displacement from the mesh without stress (m), velocity
-/// and identity, of elements Cauchy's stress (Pa), von Mises' and the number of the body, from 0.
+/// The elements of all deformable bodies where they are: of nodes displacement from the mesh without stress
+/// (m), velocity and identity, of elements Cauchy's stress (Pa), von Mises' and the number of the body, from
+/// 0.
 void write_solid_frame(const std::filesystem::path& file, const assembly::State& state);
 
 /// Bonds that broke: a point each, where its contact was.

@@ -88,7 +88,8 @@ inline std::vector<std::int32_t> rows_by_identity(const model::Bodies& bodies, R
   std::vector<std::int32_t> rows;
   rows.reserve(bodies.identity.size());
   for (std::int32_t row = 0; row < bodies.size(); ++row)
-    if (which == Rows::balls_and_nodes || bodies.radius[static_cast<std::size_t>(row)] > 0) rows.push_back(row);
+    if (which == Rows::balls_and_nodes || bodies.radius[static_cast<std::size_t>(row)] > 0)
+      rows.push_back(row);
   std::sort(rows.begin(), rows.end(),
             [&](std::int32_t a, std::int32_t b) { return bodies.identity[a] < bodies.identity[b]; });
   return rows;

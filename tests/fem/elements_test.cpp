@@ -4,7 +4,6 @@
 #include "eigengrain/fem/material.hpp"
 
 #include <Eigen/Eigenvalues>
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -121,7 +120,8 @@ TEST(Elements, StiffnessIsMinusTheDerivativeOfForces) {
       const Elements elements(mesh);
       const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, 2, -1).normalized()).toRotationMatrix();
       std::vector<Vec3> x = places(mesh, 5);
-      for (Vec3& node : x) node = (turn * (node + Vec3(uniform(random), uniform(random), uniform(random)))).eval();
+      for (Vec3& node : x)
+        node = (turn * (node + Vec3(uniform(random), uniform(random), uniform(random)))).eval();
       const Eigen::MatrixXd K = elements.stiffness(solid, 5, x);
       std::vector<Vec3> more(x.size());
       std::vector<Vec3> less(x.size());

@@ -93,7 +93,7 @@ def ours(folder, name):
     import eigengrain
     state = eigengrain.load({
         "materials": [{"name": "steel", "density": DENSITY, "young": YOUNG, "poisson": POISSON}],
-        "contacts": [{"law": "linear", "kn": 1.0}],
+        "contacts": [{"between": ["any", "any"], "law": "linear", "kn": 1.0}],
         "deformables": [{"mesh": {"file": str(folder / name), "unit": "m"}, "material": "steel", "model": "linear"}]})
     system = state.system()
     K = system.K.tocsr()

@@ -94,11 +94,11 @@ struct BodySum;
 struct Candidate;
 }  // namespace kernel
 
-/// The sum of the forces of contacts and of elements on every body, for one contact graph: the work of the explicit cycle
-/// and of a residual. Threads share fixed chunks of bodies; a contact is evaluated once, in the chunk of its first
-/// body, and what it does to a body of another chunk is kept and added in the end. So every sum has one order
-/// (the order of the contacts), and the result is the same to the bit on any number of threads. Nothing is
-/// allocated in a steady state. Cost O(contacts).
+/// The sum of the forces of contacts and of elements on every body, for one contact graph: the work of the
+/// explicit cycle and of a residual. Threads share fixed chunks of bodies; a contact is evaluated once, in
+/// the chunk of its first body, and what it does to a body of another chunk is kept and added in the end. So
+/// every sum has one order (the order of the contacts), and the result is the same to the bit on any number
+/// of threads. Nothing is allocated in a steady state. Cost O(contacts).
 class ContactForceSum {
  public:
   /// turns  whether moments are wanted
@@ -126,7 +126,8 @@ class ContactForceSum {
   struct GroupPlan {
     std::vector<std::int64_t> starts;  ///< [chunks + 1]
     std::vector<std::int32_t> slot;    ///< [contacts] into foreign_, or own_chunk; empty for walls
-    std::vector<std::array<std::int32_t, 3>> skin_slot;  ///< [contacts] of corners that are bodies; empty without skins
+    std::vector<std::array<std::int32_t, 3>>
+        skin_slot;  ///< [contacts] of corners that are bodies; empty without skins
     /// [chunks] those that a kernel evaluates, as of the last selection; empty for scalar loops
     std::vector<std::vector<kernel::Candidate>> candidates;
     std::vector<std::vector<BondBreak>> broken;  ///< [chunks] in the last advance; empty where nothing breaks

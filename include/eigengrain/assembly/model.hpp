@@ -12,10 +12,11 @@ namespace eigengrain::assembly {
 
 /// A scene brought to life: bodies in storage order, and the contacts that act between them.
 struct Model {
-  model::Bodies bodies;                  ///< along a space-filling curve; identity is the place in the scene
-  std::vector<model::Plane> walls;       ///< where they are now
-  std::vector<model::Surface> surfaces;  ///< walls of triangles, as they start, and then the skins of `solids`
-  model::Facets facets;                  ///< their triangles, as they start; those of skins as they are
+  model::Bodies bodies;             ///< along a space-filling curve; identity is the place in the scene
+  std::vector<model::Plane> walls;  ///< where they are now
+  std::vector<model::Surface>
+      surfaces;          ///< walls of triangles, as they start, and then the skins of `solids`
+  model::Facets facets;  ///< their triangles, as they start; those of skins as they are
   std::vector<contact::SurfacePlace> surface_places;  ///< [surfaces] where they are now
   std::vector<search::FacetTree> facet_trees;         ///< [surfaces]
   std::vector<model::WallMotion> wall_motions;        ///< of those that move

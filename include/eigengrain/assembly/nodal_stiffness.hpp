@@ -17,9 +17,10 @@ struct Trial;
 std::vector<TouchedBody> touched_by_nodal(const Model& model, Listed which);
 NodalStiffness nodal_stiffness(const Model& model, Listed which, const Unknowns& unknowns);
 
-/// Hands every block of the consistent tangent of elements and of contacts with skins to add(row block, column block,
-/// 3×3 block), masked rows and columns zero, in a trial state: minus the derivative of ContactForceSum::evaluate but for
-/// what changes with the point of a skin that is touched, which is smaller by overlap over edge.
+/// Hands every block of the consistent tangent of elements and of contacts with skins to add(row block,
+/// column block, 3×3 block), masked rows and columns zero, in a trial state: minus the derivative of
+/// ContactForceSum::evaluate but for what changes with the point of a skin that is touched, which is smaller
+/// by overlap over edge.
 void for_each_nodal_tangent(const Model& model, const Trial& trial, const Unknowns& unknowns,
                             const std::function<void(std::int32_t, std::int32_t, const Mat3&)>& add);
 

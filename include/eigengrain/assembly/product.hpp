@@ -11,8 +11,9 @@
 
 namespace eigengrain::assembly {
 
-/// y = S K S x without K but for the part of deformable bodies: each contact is one compact record, from 32 bytes (no shear) through 64 (balls) to
-/// 128 (anything else), against about 700 bytes of an assembled matrix.
+/// y = S K S x without K but for the part of deformable bodies: each contact is one compact record, from 32
+/// bytes (no shear) through 64 (balls) to 128 (anything else), against about 700 bytes of an assembled
+/// matrix.
 ///
 /// S is a diagonal scaling: M^-½ for the eigenvalues of M⁻¹K (LinearSystem::inverse_sqrt_mass), or ones at
 /// free components and zeros at masked ones for K itself.

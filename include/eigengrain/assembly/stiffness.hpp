@@ -46,8 +46,9 @@ bool is_element(const Group& group, std::size_t c) {
 }
 
 /// Calls visit(law, element), or visit(law, element, pair), for every contact that counts, group after group,
-/// in the order of the contacts; but for those with skins of deformable bodies (for_each_skin_element). An end at a ball of a clump is one at the clump's holder, with the lever
-/// from the clump's centre. Cost O(contacts); nothing is allocated here.
+/// in the order of the contacts; but for those with skins of deformable bodies (for_each_skin_element). An
+/// end at a ball of a clump is one at the clump's holder, with the lever from the clump's centre. Cost
+/// O(contacts); nothing is allocated here.
 template <class Visit>
 void for_each_element(const Model& model, Listed which, const Visit& visit) {
   const contact::Placement placement = model.placement();
@@ -83,7 +84,8 @@ void for_each_element(const Model& model, Listed which, const Visit& visit) {
   });
 }
 
-/// The same for contacts with skins of deformable bodies: visit(law, element). The ball of a clump is its holder.
+/// The same for contacts with skins of deformable bodies: visit(law, element). The ball of a clump is its
+/// holder.
 template <class Visit>
 void for_each_skin_element(const Model& model, Listed which, const Visit& visit) {
   if (model.solids.empty()) return;

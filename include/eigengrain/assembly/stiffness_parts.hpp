@@ -26,13 +26,13 @@ BlockMatrix with_pattern(std::vector<std::vector<std::int32_t>> rows, std::int32
 /// Adds to a block of the pattern.
 void add_to(BlockMatrix& matrix, std::int32_t row, std::int32_t column, const Mat3& block);
 
-/// The part of K whose elements have more than two bodies: finite elements, and contacts with their skins. It is
-/// assembled, as nodes of a mesh share most of their blocks.
+/// The part of K whose elements have more than two bodies: finite elements, and contacts with their skins. It
+/// is assembled, as nodes of a mesh share most of their blocks.
 struct NodalStiffness {
-  BlockMatrix k;                 ///< [unknowns × unknowns] both triangles, N/m, N, N m; masked rows and columns are zero
-  std::vector<double> viscous;   ///< [as k.values] dashpots, N s/m, N s, N m s; empty: there are none
-  /// [bodies] Σ n_e K_e,ii over the elements e of a body, n_e their bodies that can move: K is nowhere larger than this
-  /// block diagonal, as (Σ x_i)² <= n Σ x_i². On (u, θ) along the axes of space.
+  BlockMatrix k;  ///< [unknowns × unknowns] both triangles, N/m, N, N m; masked rows and columns are zero
+  std::vector<double> viscous;  ///< [as k.values] dashpots, N s/m, N s, N m s; empty: there are none
+  /// [bodies] Σ n_e K_e,ii over the elements e of a body, n_e their bodies that can move: K is nowhere larger
+  /// than this block diagonal, as (Σ x_i)² <= n Σ x_i². On (u, θ) along the axes of space.
   std::vector<Mat6> bound;
   std::vector<Mat6> viscous_bound;  ///< the same of `viscous`
 

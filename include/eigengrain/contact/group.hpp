@@ -52,7 +52,8 @@ using AnyGroup = decltype(detail::all_groups(KinematicsTypes{}))::type;
 struct Contacts {
   std::vector<AnyGroup> groups;
 
-  // Compiled once: each of them is a function for every kinematics with every law, in every file that has a model.
+  // Compiled once: each of them is a function for every kinematics with every law, in every file that has a
+  // model.
   Contacts();
   Contacts(const Contacts&);
   Contacts(Contacts&&) noexcept;

@@ -177,10 +177,10 @@ struct BallFacet {
                                      const model::Facet& facet, const Pair& pair, const Vec3& back) {
     const SurfacePlace& place = place_of(placement, places, pair);
     const bool deformable = deforms(placement, pair);
-    ContactGeometry result = ball_feature(
-        local_centre(placement, places, pair, back), placement.radius[pair.a], facet,
-        feature(placement, pair), pair.side < 0 ? -1 : 1, place.start,
-        deformable ? to_nearest_point : placement.lever_cut);
+    ContactGeometry result =
+        ball_feature(local_centre(placement, places, pair, back), placement.radius[pair.a], facet,
+                     feature(placement, pair), pair.side < 0 ? -1 : 1, place.start,
+                     deformable ? to_nearest_point : placement.lever_cut);
     if (!pair.is_contact()) result.overlap = std::min(result.overlap, 0.0);
     if (deformable) {
       result.lever_b.setZero();  // what moves is the point itself

@@ -16,14 +16,15 @@ namespace eigengrain::contact {
 ///
 ///     u_P = Σ N_i u_i,      θ_P = Σ C_i u_i
 ///
-/// N are barycentric. θ is the rotation of the triangle: of its normal n by n × dn, and about n by half the curl of the
-/// displacement in its plane. With g_i = ∇N_i in the plane and t_i = n × g_i:  C_i = ½ n t_iᵀ - t_i nᵀ. A rigid motion
-/// of the corners gives that motion of P, so forces and moments on P handed to the corners by the transpose,
+/// N are barycentric. θ is the rotation of the triangle: of its normal n by n × dn, and about n by half the
+/// curl of the displacement in its plane. With g_i = ∇N_i in the plane and t_i = n × g_i:  C_i = ½ n t_iᵀ -
+/// t_i nᵀ. A rigid motion of the corners gives that motion of P, so forces and moments on P handed to the
+/// corners by the transpose,
 ///
 ///     f_i = N_i F + C_iᵀ M,
 ///
-/// keep momentum and angular momentum - if P is the point where the force acts: a ball's lever to a deformable surface
-/// ends at P, not half an overlap before it.
+/// keep momentum and angular momentum - if P is the point where the force acts: a ball's lever to a
+/// deformable surface ends at P, not half an overlap before it.
 struct SkinPoint {
   std::array<std::int32_t, 3> body{};  ///< rows of the corners
   std::array<double, 3> weight{};      ///< N, not negative, sum 1
@@ -57,8 +58,9 @@ bool on_skin(const Placement& placement, const Pair& pair) {
 /// The point of facet pair.b that is nearest to ball pair.a. The facet is of a deformable surface.
 SkinPoint skin_point(const Placement& placement, const Pair& pair);
 
-/// All that K needs of a contact with a skin: the element between the ball and P, whose lever_b is zero and whose b is
-/// no body, and how P moves with the corners. K = TᵀBᵀDBT, T = (u_a, θ_a, u_1, u_2, u_3) → (u_a, θ_a, u_P, θ_P).
+/// All that K needs of a contact with a skin: the element between the ball and P, whose lever_b is zero and
+/// whose b is no body, and how P moves with the corners. K = TᵀBᵀDBT, T = (u_a, θ_a, u_1, u_2, u_3) → (u_a,
+/// θ_a, u_P, θ_P).
 struct SkinElement {
   ContactElement element;
   SkinPoint point;

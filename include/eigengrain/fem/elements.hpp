@@ -13,9 +13,9 @@ namespace eigengrain::fem {
 /// Most nodes of an element.
 inline constexpr int most_nodes = 10;
 
-/// What the elements of a mesh are without stress: the derivatives of their shape functions by place, and the volume
-/// that each integration point stands for. tet4 has one point, tet10 four (Keast, Comput. Meth. Appl. Mech. Eng. 55:339,
-/// 1986, degree 2), hex8 the eight of Gauss.
+/// What the elements of a mesh are without stress: the derivatives of their shape functions by place, and the
+/// volume that each integration point stands for. tet4 has one point, tet10 four (Keast, Comput. Meth. Appl.
+/// Mech. Eng. 55:339, 1986, degree 2), hex8 the eight of Gauss.
 class Elements {
  public:
   explicit Elements(const model::Mesh& mesh);
@@ -38,7 +38,8 @@ class Elements {
               std::span<Vec3> forces) const;
   /// Its stored energy, J.
   double energy(const model::ElasticSolid& solid, std::int32_t e, std::span<const Vec3> x) const;
-  /// K_ij = Σ_q V_q ∇N_i · ∂P/∂F · ∇N_j: minus the derivative of forces(), symmetric [3 nodes × 3 nodes], N/m.
+  /// K_ij = Σ_q V_q ∇N_i · ∂P/∂F · ∇N_j: minus the derivative of forces(), symmetric [3 nodes × 3 nodes],
+  /// N/m.
   Eigen::MatrixXd stiffness(const model::ElasticSolid& solid, std::int32_t e, std::span<const Vec3> x) const;
   /// The mean over its volume of Cauchy's stress, Pa.
   Mat3 mean_stress(const model::ElasticSolid& solid, std::int32_t e, std::span<const Vec3> x) const;
@@ -55,11 +56,12 @@ class Elements {
   std::vector<double> gradient_;  ///< [elements × points × nodes × 3]
 };
 
-/// The consistent mass matrix of an element, [nodes × nodes] of multiples of 1, kg: for comparison; the cycle lumps.
+/// The consistent mass matrix of an element, [nodes × nodes] of multiples of 1, kg: for comparison; the cycle
+/// lumps.
 Eigen::MatrixXd consistent_mass(const model::Mesh& mesh, std::int32_t element, double density);
 
-/// Mass of each node, kg: the diagonal of the consistent mass, scaled so that elements keep their mass (Hinton, Rock and
-/// Zienkiewicz, Earthq. Eng. Struct. Dyn. 4:245, 1976). Positive for all kinds.
+/// Mass of each node, kg: the diagonal of the consistent mass, scaled so that elements keep their mass
+/// (Hinton, Rock and Zienkiewicz, Earthq. Eng. Struct. Dyn. 4:245, 1976). Positive for all kinds.
 std::vector<double> lumped_masses(const model::Mesh& mesh, double density);
 
 }  // namespace eigengrain::fem

@@ -12,10 +12,10 @@ namespace eigengrain::measures {
 
 /// Elastic energy of the contacts, J.
 struct ElasticEnergy {
-  double normal = 0;   ///< of the springs along n: what the overlaps alone would store
-  double shear = 0;    ///< of those across n
-  double rolling = 0;  ///< of those against rolling and twisting
-  double bonds = 0;    ///< in parallel bonds; a contact bond has the springs of its contact
+  double normal = 0;          ///< of the springs along n: what the overlaps alone would store
+  double shear = 0;           ///< of those across n
+  double rolling = 0;         ///< of those against rolling and twisting
+  double bonds = 0;           ///< in parallel bonds; a contact bond has the springs of its contact
   double elements = 0;        ///< of deformable bodies
   bool has_elements = false;  ///< whether there are any
 

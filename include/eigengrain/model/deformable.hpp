@@ -37,8 +37,8 @@ struct ElasticSolid {
   double shear() const { return 0.5 * young / (1 + poisson); }                           ///< µ, Pa
 };
 
-/// A body of finite elements. Its nodes are bodies without size or rotation, one row each: identities `first_node` and
-/// on, in the order of the mesh.
+/// A body of finite elements. Its nodes are bodies without size or rotation, one row each: identities
+/// `first_node` and on, in the order of the mesh.
 struct Deformable {
   std::string name;
   Mesh mesh;  ///< free of stress, where it starts, m

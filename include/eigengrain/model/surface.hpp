@@ -61,8 +61,8 @@ struct Facets {
   /// Aanæs, IEEE Trans. Vis. Comput. Graph. 11:243, 2005); edge_normal does the same for edges.
   std::vector<Vec3> vertex_normal;
   std::vector<std::uint8_t> two_sided;  ///< [surfaces]
-  /// [vertices of all surfaces] rows of the bodies that are the vertices of deformable surfaces, else -1; empty where no
-  /// surface is deformable. Facets of such surfaces are where they are now.
+  /// [vertices of all surfaces] rows of the bodies that are the vertices of deformable surfaces, else -1;
+  /// empty where no surface is deformable. Facets of such surfaces are where they are now.
   std::vector<std::int32_t> body;
 
   bool empty() const { return facet.empty(); }

@@ -51,7 +51,8 @@ struct Estimator {
   Answer (*find)(const Question& question) = nullptr;
   double failure = 0;             ///< probability that it is not safe, where the claim is `probable`
   bool depends_on_frame = false;  ///< whether another orientation of the scene gives another value
-  /// Whether it counts more than contacts of two bodies. Where a scene has deformable bodies, others are left out.
+  /// Whether it counts more than contacts of two bodies. Where a scene has deformable bodies, others are left
+  /// out.
   bool knows_nodes = false;
 };
 
