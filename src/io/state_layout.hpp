@@ -15,7 +15,7 @@ namespace eigengrain::io::layout {
 
 inline constexpr std::string_view format = "eigengrain state";
 /// Grows with every change after which an old reader would misunderstand a file.
-inline constexpr std::int64_t schema = 3;
+inline constexpr std::int64_t schema = 4;
 inline constexpr std::int64_t oldest_schema = 1;
 
 /// The columns of bodies that are there only where some body has need of them, and that older programs do not
@@ -37,8 +37,9 @@ inline bool cell_has_moved(const assembly::State& state) {
 
 /// The least schema that says all of a state, so that older programs read what they understand: 2 with
 /// clumps, 3 where bodies have loads, an α, a ramp of the radius or an inertial mass of their own, and where
-/// the periodic cell has moved.
+/// the periodic cell has moved, 4 with deformable bodies, whose nodes are rows without radius.
 inline std::int64_t schema_of(const assembly::State& state) {
+  if (!state.model.solids.empty()) return 4;
   bool own = cell_has_moved(state);
   for_each_own_column(state.model.bodies,
                       [&](const char* /*path*/, const auto& column) { own = own || !column.empty(); });

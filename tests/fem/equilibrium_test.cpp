@@ -101,8 +101,8 @@ TEST(DeformableEquilibrium, ABeamBendsFarAsTheElastica) {
   const auto at_end = [](const Vec3& x) { return x.x() > length - 1e-9; };
   load_nodes(builder, {0, 0, -5 * young / 12 / (length * length)}, at_end);
   assembly::State state = cycle::start(builder.scene());
-  const relaxation::RelaxResult result =
-      relaxation::relax(state, {.tolerance = 1e-9, .method = relaxation::Method::newton});
+  // Newton's method alone does not come so far from a straight beam: explicit steps lead the way.
+  const relaxation::RelaxResult result = relaxation::relax(state, {.tolerance = 1e-9});
   EXPECT_TRUE(result.converged);
   const Vec3 moved = mean_displacement(state, at_end) / length;
   // A beam of thickness L/20 has shear (E/κG (h/L)²/4 of the bending, 0.15%) and 1% of what its mesh lacks.
