@@ -9,7 +9,7 @@ std::vector<KeyDescription> deformable_keys() {
       {.path = "deformables",
        .kind = section_list,
        .fallback = "[]",
-       .example = "[{mesh: {file: block.msh, unit: mm}, material: rubber, young: 1 MPa, poisson: 0.4}]",
+       .example = "[{mesh: {file: block.msh, unit: mm}, material: grain, young: 1 MPa, poisson: 0.4}]",
        .description =
            "elastic bodies of finite elements. Their nodes are bodies without size, numbered behind all "
            "balls; balls touch their skin, their nodes touch planes"},
@@ -67,7 +67,7 @@ std::vector<KeyDescription> deformable_keys() {
       {.path = "deformables[].material",
        .kind = text,
        .required = true,
-       .example = "rubber",
+       .example = "grain",
        .description = "a name out of `materials`, which gives the density and decides about contacts"},
       {.path = "deformables[].model",
        .kind = word,

@@ -40,6 +40,10 @@ TEST(Schema, EveryKeyStandsOnceAndInASectionOfItsOwn) {
   }
 }
 
+constexpr std::string_view one_tetrahedron =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+    "$Elements\n1\n1 4 2 0 1 1 2 3 4\n$EndElements\n";
+
 /// Scenes that between them have a place for every key.
 std::vector<std::string> scenes_with_room() {
   const std::string materials = "materials: [{name: grain, density: 2500}]\n";
@@ -111,6 +115,19 @@ std::vector<std::string> scenes_with_room() {
                                   materials + no_law + ball + table + region,
                                   materials + no_law + ball + sphere,
                                   materials + no_law + ball + region_box};
+  const auto block = [](const std::string& edge, const std::string& more) {
+    return "deformables: [{block: {min: [0, 0, 0], max: [" + edge + ", " + edge + ", " + edge +
+           "], cells: [4, 4, 4]}, material: grain, young: 1 MPa, poisson: 0.4" + more + "}]\n";
+  };
+  const auto parts = [](const std::string& shape) {
+    return ", fix: [{" + shape + "axes: [x]}], loads: [{" + shape + "force: [0, 0, 1]}]";
+  };
+  for (const std::string& deformable : {std::string("deformables: [{mesh: {file: block.msh, unit: mm}, "
+                                                    "material: grain, young: 1 MPa, poisson: 0.4}]\n"),
+                                        block("0.1", ""), block("1", ""), block("0.1", parts("")),
+                                        block("0.1", parts("box: {min: [-1, -1, -1], max: [2, 2, 2]}, ")),
+                                        block("0.1", parts("sphere: {centre: [0, 0, 0], radius: 1}, "))})
+    scenes.push_back(materials + no_law + ball + deformable);
   const std::string rest = materials + no_law + ball;
   const auto in_stage = [](std::string keys) {
     return "stages: [{" + keys.substr(0, keys.size() - 1) + "}]\n";
@@ -170,6 +187,7 @@ TEST(Schema, EveryKeyIsAcceptedWithItsExampleAndItsDefault) {
   const TemporaryFolder folder;
   folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
   folder.write("motion.csv", "0 0 0 0\n");
+  folder.write("block.msh", one_tetrahedron);
   folder.write("drum.stl", "solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n");
   const auto accepted = [&](const std::string& assignment, std::string& reasons) {
     for (const std::string& scene : scenes_with_room()) {
@@ -192,6 +210,7 @@ TEST(Schema, EverySectionRejectsUnknownKeys) {
   const TemporaryFolder folder;
   folder.write("packing.txt", "0.1 0.1 0.1 0.005\n");
   folder.write("motion.csv", "0 0 0 0\n");
+  folder.write("block.msh", one_tetrahedron);
   folder.write("drum.stl", "solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendfacet\nendsolid\n");
   for (const KeyDescription& key : scene_schema()) {
     std::string path = first_entry(key.path);
