@@ -26,13 +26,13 @@ FOLDER = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".")
 FOLDER.mkdir(parents=True, exist_ok=True)
 
 
-def by_polynomial(a, above, largest, columns=160, degree=700):
+def by_polynomial(a, above, largest, columns=112, degree=500):
     """All eigenvalues of `a` up to `above`. T_n(x) ~ exp(2 n √((cut - λ)/largest))/2 for λ below the cut, 1 beyond it.
 
-    The cut at 1.6 of the last one wanted: exp(2 · 700 · √(0.6 · 1.7e6/1.1e9)) = 1e18 for that one. The block has to have
-    more columns than there are eigenvalues below the cut.
+    The cut at 1.25 of the last one wanted: exp(2 · 500 · √(0.25 · 1.7e6/1.1e9)) = 4e8 for that one, and its square is what
+    the eigenvalue is good to. The block has to have more columns than there are eigenvalues below the cut.
     """
-    cut = 1.6 * above
+    cut = 1.25 * above
     middle, half = 0.5 * (1.01 * largest + cut), 0.5 * (1.01 * largest - cut)
     block = np.random.default_rng(1).standard_normal((a.shape[0], columns))
     before, now = block, (a @ block - middle * block) / half

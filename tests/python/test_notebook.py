@@ -84,7 +84,7 @@ def check(found, cell, lowest):
     assert len(known) > 0
     for k in known:
         assert abs(density.count[k] - counted[k]) < 3 * density.error[k]
-    # The mean of ω² is tr(A)/n. Of 8 random vectors it has a variance of 2 tr(A²)/8n², and bins and smearing add their squares.
+    # The mean of ω² is tr(A)/n. Of 8 random vectors it has a variance of 2 tr(A²)/8n²; bins and smearing add their squares.
     n, mean, width = a.shape[0], a.diagonal().mean(), density.edges[1]
     deviation = np.sqrt(2 * a.multiply(a).sum() / (8 * n**2)) + width**2 / 12 + density.resolution**2
     assert abs(density.count @ (density.edges[1:] - width / 2) ** 2 / n - mean) < 3 * deviation
